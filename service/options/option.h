@@ -11,8 +11,9 @@
 
 namespace windhover {
 
-// An option is one member of one struct plus one entry in that struct's Fields() tuple. From that one
-// description come the GObject property, the --set key, the --help line and the documentation row.
+// An option is one member of one struct plus one entry in that struct's Fields() tuple. From that
+// one description come the GObject property, the --set key, the --help line and the documentation
+// row.
 //
 //   struct ExampleOptions {
 //     int tiles = 36;  // the default
@@ -92,22 +93,27 @@ constexpr void ForEachField(Visit&& visit) {
   std::apply([&](const auto&... field) { (visit(field), ...); }, S::Fields());
 }
 
-// A value that an option cannot take. The text names the option, the value and what would be right.
+// A value that an option cannot take. The text names the option, the value and what would be right:
+// the allowed range with its unit, or the choices.
 class OptionError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-// Throws OptionError for the first number out of range.
+// Throws OptionError for the first number that is not finite or out of range and for the first
+// choice that is none.
 template <typename S>
 void CheckOptions(const S& options);
 
-// Sets the option called `name` from text; throws OptionError where there is none of that name, or
-// the text is no value in range. Returns false, leaving all as it is, where S has no such option.
+// Sets the option called `name` from text. Returns false, leaving all as it is, where S has no
+// option of that name; throws OptionError, leaving all as it is, where the text is not wholly a
+// value that the option can take. Numbers are written as in C whatever the locale, without sign '+'
+// or spaces; flags are "true" or "false"; choices are their names.
 template <typename S>
 bool SetOption(S& options, std::string_view name, std::string_view text);
 
-// The value as SetOption takes it.
+// The value in the form that SetOption takes; numbers are the shortest text that gives them back
+// exactly. Throws OptionError where S has no option of that name.
 template <typename S>
 std::string OptionText(const S& options, std::string_view name);
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu-kernels/opencl/context.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace windhover::opencl {
+namespace {
+
+Handle<cl_command_queue> MakeQueue(const Context& context) {
+  cl_int code = CL_SUCCESS;
+  Handle<cl_command_queue> queue(
+      clCreateCommandQueue(context.get(), context.device_id(), 0, &code));
+  Check(code, "clCreateCommandQueue", context.name());
+  return queue;
+}
+
+std::string BuildLog(cl_program program, cl_device_id device) {
+  std::size_t size = 0;
+  clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+  std::string log(size, '\0');
+  if (size > 0) {
+    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    log.resize(size - 1);
+  }
+  return log;
+}
+
+}  // namespace
+
+Buffer::Buffer(const Context& context, std::size_t size_bytes)
+    : device_(context.name()),
+      context_(context.handle()),
+      queue_(context.map_queue()),
+      size_bytes_(size_bytes) {
+  if (size_bytes == 0) throw std::invalid_argument("memory of 0 bytes asked for");
+  cl_int code = CL_SUCCESS;
+  memory_ = Handle<cl_mem>(clCreateBuffer(context.get(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
+                                          size_bytes, nullptr, &code));
+  Check(code, "clCreateBuffer of " + std::to_string(size_bytes) + " bytes", device_);
+}
+
+std::byte* Buffer::Map(Access access) {
+  const cl_map_flags flags = access == Access::kRead    ? CL_MAP_READ
+                             : access == Access::kWrite ? CL_MAP_WRITE_INVALIDATE_REGION
+                                                        : CL_MAP_READ | CL_MAP_WRITE;
+  cl_int code = CL_SUCCESS;
+  void* pointer = clEnqueueMapBuffer(queue_.get(), memory_.get(), CL_TRUE, flags, 0, size_bytes_, 0,
+                                     nullptr, nullptr, &code);
+  Check(code, "clEnqueueMapBuffer", device_);
+  return static_cast<std::byte*>(pointer);
+}
+
+void Buffer::Unmap(std::byte* pointer) noexcept {
+  // Other queues do not wait for this one: what was written must have arrived when this returns.
+  Handle<cl_event> done;
+  if (clEnqueueUnmapMemObject(queue_.get(), memory_.get(), pointer, 0, nullptr, done.out()) ==
+      CL_SUCCESS) {
+    const cl_event event = done.get();
+    clWaitForEvents(1, &event);
+  }
+}
+
+Queue::Queue(const Context& context)
+    : device_(context.name()), context_(context.handle()), queue_(MakeQueue(context)) {}
+
+void Queue::Finish() { WINDHOVER_CL(device_, clFinish(queue_.get())); }
+
+Context::Context(const Device& device, ProgramCache cache)
+    : device_(device), name_(device.info.Describe()), cache_(std::move(cache)) {
+  const cl_context_properties properties[] = {
+      CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(device.platform), 0};
+  cl_int code = CL_SUCCESS;
+  context_ =
+      Handle<cl_context>(clCreateContext(properties, 1, &device.id, nullptr, nullptr, &code));
+  Check(code, "clCreateContext", name_);
+  map_queue_ = MakeQueue(*this);
+
+  cl_uint lanes = 1;
+  WINDHOVER_CL(name_, clGetDeviceInfo(device.id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof(lanes),
+                                      &lanes, nullptr));
+  if (is_cpu()) native_float_lanes_ = static_cast<int>(std::clamp<cl_uint>(lanes, 1, 16));
+}
+
+std::unique_ptr<Buffer> Context::Allocate(std::size_t size_bytes) const {
+  return std::make_unique<Buffer>(*this, size_bytes);
+}
+
+Program Context::Compile(std::string_view source, const std::string& options) {
+  const std::string all_options = "-cl-std=CL1.2 " + options;
+  // A program runs on the very device, driver and compiler that it was made by, and on no other.
+  std::string key;
+  for (const std::string& part :
+       {device_.info.platform, device_.info.name, DeviceText(device_.id, CL_DEVICE_VERSION),
+        DeviceText(device_.id, CL_DRIVER_VERSION), all_options}) {
+    key += part + '\n';
+  }
+  key += source;
+
+  const std::lock_guard lock(mutex_);
+  if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
+
+  Program program;
+  program.device = name_;
+  if (const auto binary = cache_.Load(key)) {
+    program.handle = BuildFromBinary(*binary, all_options);
+    program.from_cache = program.handle.get() != nullptr;
+  }
+  if (!program.from_cache) {
+    program.handle = BuildFromSource(source, all_options);
+    cache_.Store(key, BinaryOf(program.handle));
+  }
+  programs_.emplace(std::move(key), program);
+  return program;
+}
+
+// An empty handle where the driver does not take the binary.
+Handle<cl_program> Context::BuildFromBinary(const std::vector<unsigned char>& binary,
+                                            const std::string& options) const {
+  const std::size_t size = binary.size();
+  const unsigned char* data = binary.data();
+  cl_int status = CL_SUCCESS;
+  cl_int code = CL_SUCCESS;
+  Handle<cl_program> program(
+      clCreateProgramWithBinary(get(), 1, &device_.id, &size, &data, &status, &code));
+  if (code != CL_SUCCESS || status != CL_SUCCESS ||
+      clBuildProgram(program.get(), 1, &device_.id, options.c_str(), nullptr, nullptr) !=
+          CL_SUCCESS) {
+    return {};
+  }
+  return program;
+}
+
+Handle<cl_program> Context::BuildFromSource(std::string_view source,
+                                            const std::string& options) const {
+  const char* text = source.data();
+  const std::size_t size = source.size();
+  cl_int code = CL_SUCCESS;
+  Handle<cl_program> program(clCreateProgramWithSource(get(), 1, &text, &size, &code));
+  Check(code, "clCreateProgramWithSource", name_);
+  code = clBuildProgram(program.get(), 1, &device_.id, options.c_str(), nullptr, nullptr);
+  if (code != CL_SUCCESS) {
+    Check(code, "clBuildProgram " + options + "\n" + BuildLog(program.get(), device_.id) + "\n",
+          name_);
+  }
+  return program;
+}
+
+std::vector<unsigned char> Context::BinaryOf(const Handle<cl_program>& program) const {
+  std::size_t size = 0;
+  WINDHOVER_CL(name_, clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, sizeof(size), &size,
+                                       nullptr));
+  std::vector<unsigned char> binary(size);
+  unsigned char* data = binary.data();
+  WINDHOVER_CL(name_,
+               clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, sizeof(data), &data, nullptr));
+  return binary;
+}
+
+const Buffer& BufferOf(const Memory& memory, cl_context context) {
+  const auto* buffer = dynamic_cast<const Buffer*>(&memory);
+  if (buffer == nullptr || buffer->context() != context) {
+    throw std::invalid_argument("the image belongs to another backend");
+  }
+  return *buffer;
+}
+
+}  // namespace windhover::opencl

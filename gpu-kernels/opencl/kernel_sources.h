@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace windhover {
+
+// The operators' .cl files, word for word, embedded by deploy/cmake/EmbedKernels.cmake. Each begins
+// with a #line that makes compiler messages name the file.
+extern const std::string_view kDecimateCl;
+extern const std::string_view kDifferenceThresholdCl;
+extern const std::string_view kPhaseCorrelationCl;
+extern const std::string_view kTemporalMedianCl;
+extern const std::string_view kWarpCl;
+
+}  // namespace windhover

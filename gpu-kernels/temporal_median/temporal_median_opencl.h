@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "gpu-kernels/opencl/context.h"
+#include "gpu-kernels/temporal_median/temporal_median.h"
+
+namespace windhover {
+
+// Runs on the context's device. Throws DeviceError.
+std::unique_ptr<TemporalMedian> MakeTemporalMedianOpenCl(opencl::Context& context);
+
+}  // namespace windhover

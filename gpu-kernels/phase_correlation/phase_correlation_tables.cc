@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu-kernels/phase_correlation/phase_correlation_tables.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace windhover {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kMinSide = 16;
+constexpr int kMaxSide = 512;
+constexpr int kMaxTiles = 1024;
+
+bool IsTileSide(int side) {
+  return side >= kMinSide && side <= kMaxSide && std::has_single_bit(static_cast<unsigned>(side));
+}
+
+void Check(const PhaseCorrelationSettings& settings) {
+  if (!IsTileSide(settings.tile_width) || !IsTileSide(settings.tile_height)) {
+    throw std::invalid_argument("phase correlation: tile sides must be powers of two, 16 to 512");
+  }
+  if (settings.tiles.empty() || settings.tiles.size() > kMaxTiles) {
+    throw std::invalid_argument("phase correlation: must have 1 to 1024 tiles");
+  }
+  if (!(settings.blackman_alpha >= 0.0F && settings.blackman_alpha <= 0.5F)) {
+    throw std::invalid_argument("phase correlation: Blackman alpha must be 0 to 0.5");
+  }
+  if (!(settings.peak_sigma_px >= 0.0F && settings.peak_sigma_px <= 4.0F)) {
+    throw std::invalid_argument("phase correlation: peak sigma must be 0 to 4 px");
+  }
+  if (!(settings.noise_sigma > 0.0F && settings.noise_sigma <= 255.0F)) {
+    throw std::invalid_argument("phase correlation: noise sigma must be over 0 and at most 255");
+  }
+}
+
+// The exact Blackman window of thesis 2.4.4 at the middles of `side` equal parts of its support.
+std::vector<float> BlackmanWindow(int side, double alpha) {
+  std::vector<float> weights(side);
+  for (int i = 0; i < side; ++i) {
+    const double phase = 2.0 * kPi * (i + 0.5) / side;
+    const double weight =
+        (1.0 - alpha) / 2.0 - 0.5 * std::cos(phase) + alpha / 2.0 * std::cos(2.0 * phase);
+    weights[i] = static_cast<float>(weight);
+  }
+  return weights;
+}
+
+// Frequency of a transform's bin in cycles a px, -1/2 to 1/2.
+double Frequency(int bin, int side) {
+  return static_cast<double>(bin <= side / 2 ? bin : bin - side) / side;
+}
+
+std::vector<float> SpectralWeight(int width, int height, double sigma) {
+  const auto gaussian = [sigma](double fx, double fy) {
+    return std::exp(-2.0 * kPi * kPi * sigma * sigma * (fx * fx + fy * fy));
+  };
+  double sum = -1.0;  // all bins but the zero frequency
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) sum += gaussian(Frequency(x, width), Frequency(y, height));
+  }
+  std::vector<float> weights;
+  weights.reserve((width / 2 + 1) * height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x <= width / 2; ++x) {
+      const double weight = gaussian(Frequency(x, width), Frequency(y, height)) / sum;
+      weights.push_back(static_cast<float>(weight));
+    }
+  }
+  weights[0] = 0.0F;
+  return weights;
+}
+
+double Sum(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float value : values) sum += value;
+  return sum;
+}
+
+double SumOfSquares(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float value : values) sum += static_cast<double>(value) * value;
+  return sum;
+}
+
+// Where between its neighbours a sampled maximum lies, -0.5 to 0.5.
+float SubPixelOffset(float left, float centre, float right) {
+  if (left > 0.0F && centre > 0.0F && right > 0.0F) {
+    left = std::log(left);
+    centre = std::log(centre);
+    right = std::log(right);
+  }
+  const float denominator = 4.0F * centre - 2.0F * left - 2.0F * right;
+  if (!(denominator > 0.0F)) return 0.0F;
+  return std::clamp((right - left) / denominator, -0.5F, 0.5F);
+}
+
+struct Moments {
+  float xx;
+  float xy;
+  float yy;
+};
+
+Moments FootprintMoments(std::span<const float> samples, int radius, float threshold) {
+  const int side = 2 * radius + 1;
+  double sum = 0.0, x_sum = 0.0, y_sum = 0.0, xx_sum = 0.0, xy_sum = 0.0, yy_sum = 0.0;
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      const double weight = samples[(y + radius) * side + x + radius] - threshold;
+      if (!(weight > 0.0)) continue;
+      sum += weight;
+      x_sum += weight * x;
+      y_sum += weight * y;
+      xx_sum += weight * x * x;
+      xy_sum += weight * x * y;
+      yy_sum += weight * y * y;
+    }
+  }
+  constexpr float kSampleExtent = 1.0F / 12.0F;
+  if (!(sum > 0.0)) return {kSampleExtent, 0.0F, kSampleExtent};
+  const double x_mean = x_sum / sum;
+  const double y_mean = y_sum / sum;
+  return {static_cast<float>(xx_sum / sum - x_mean * x_mean) + kSampleExtent,
+          static_cast<float>(xy_sum / sum - x_mean * y_mean),
+          static_cast<float>(yy_sum / sum - y_mean * y_mean) + kSampleExtent};
+}
+
+}  // namespace
+
+PhaseCorrelationTables::PhaseCorrelationTables(const PhaseCorrelationSettings& settings) {
+  Check(settings);
+  tile_width = settings.tile_width;
+  tile_height = settings.tile_height;
+  spectrum_width = tile_width / 2 + 1;
+  window_x = BlackmanWindow(tile_width, settings.blackman_alpha);
+  window_y = BlackmanWindow(tile_height, settings.blackman_alpha);
+  window_sum = static_cast<float>(Sum(window_x) * Sum(window_y));
+  spectral_weight = SpectralWeight(tile_width, tile_height, settings.peak_sigma_px);
+  const double grey_variance =
+      static_cast<double>(settings.noise_sigma) * settings.noise_sigma + 1.0 / 12.0;
+  noise_power = static_cast<float>(grey_variance * SumOfSquares(window_x) * SumOfSquares(window_y));
+  peak_radius = std::min(2 + static_cast<int>(std::ceil(3.0F * settings.peak_sigma_px)),
+                         std::min(tile_width, tile_height) / 4);
+}
+
+TilePeak MeasurePeak(const PhaseCorrelationTables& tables, const PeakNeighbourhood& peak,
+                     float reference_coverage, float current_coverage) {
+  constexpr float kRoundingVariance = 1e-6F;
+  const int side = 2 * tables.peak_radius + 1;
+  const int middle = tables.peak_radius * side + tables.peak_radius;
+  const std::span<const float> v = peak.samples;
+
+  TilePeak result;
+  result.coverage = current_coverage;
+  result.noise = std::sqrt(std::max(peak.mean_square_outside, 0.0F));
+  result.height = v[middle];
+  if (!(result.height > 0.0F)) {
+    result.height = 0.0F;
+    result.covariance_xx = static_cast<float>(tables.tile_width * tables.tile_width) / 12.0F;
+    result.covariance_yy = static_cast<float>(tables.tile_height * tables.tile_height) / 12.0F;
+    return result;
+  }
+
+  const int shift_x = peak.x > tables.tile_width / 2 ? peak.x - tables.tile_width : peak.x;
+  const int shift_y = peak.y > tables.tile_height / 2 ? peak.y - tables.tile_height : peak.y;
+  result.dx = static_cast<float>(shift_x) + SubPixelOffset(v[middle - 1], v[middle], v[middle + 1]);
+  result.dy =
+      static_cast<float>(shift_y) + SubPixelOffset(v[middle - side], v[middle], v[middle + side]);
+
+  const float threshold = std::max(3.0F * result.noise, result.height / 16.0F);
+  const Moments moments = FootprintMoments(v, tables.peak_radius, threshold);
+  const float noise_ratio = result.noise / result.height;
+  const float scale = noise_ratio * noise_ratio;
+  result.covariance_xx = scale * moments.xx + kRoundingVariance;
+  result.covariance_xy = scale * moments.xy;
+  result.covariance_yy = scale * moments.yy + kRoundingVariance;
+
+  result.valid = reference_coverage >= kMinCoverage && current_coverage >= kMinCoverage &&
+                 result.height > kMinPeakToNoise * result.noise &&
+                 shift_x != tables.tile_width / 2 && shift_y != tables.tile_height / 2;
+  return result;
+}
+
+}  // namespace windhover

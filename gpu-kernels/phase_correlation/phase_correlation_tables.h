@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gpu-kernels/phase_correlation/phase_correlation.h"
+
+namespace windhover {
+
+// A peak is believed where its height is more than this many times the surface's noise.
+inline constexpr float kMinPeakToNoise = 4.0F;
+// A tile is believed where the picture covers at least this share of its window weight.
+inline constexpr float kMinCoverage = 0.25F;
+
+// What both twins derive from the settings. Throws std::invalid_argument where they are out of
+// range.
+struct PhaseCorrelationTables {
+  explicit PhaseCorrelationTables(const PhaseCorrelationSettings& settings);
+
+  int tile_width;
+  int tile_height;
+  // Columns of the half spectrum that a real transform yields: tile_width / 2 + 1.
+  int spectrum_width;
+
+  // Blackman weights, positive and symmetric about (side - 1) / 2; a sample's weight is
+  // window_x[x] * window_y[y]. window_sum is the sum over the tile.
+  std::vector<float> window_x;
+  std::vector<float> window_y;
+  float window_sum;
+
+  // Weights of the normalised cross-power spectrum, tile_height x spectrum_width, row-major, bin
+  // (0, 0) first: the Gaussian of peak_sigma_px over its sum over all bins of the full spectrum, 0
+  // at the zero frequency. An inverse transform without a factor of its own thus gives a perfect
+  // match without shift a peak of exactly 1.
+  std::vector<float> spectral_weight;
+
+  // Added to the cross power's magnitude before it divides the cross power: the noise power that a
+  // bin is expected to have, (noise_sigma^2 + 1/12) * sum of the squared weights of the window,
+  // where 1/12 is the power of rounding to whole grey levels.
+  float noise_power;
+
+  // Half side in px of the square about the highest sample that counts as the peak's neighbourhood:
+  // 2 + ceil(3 * peak_sigma_px), but at most a quarter of the smaller tile side.
+  int peak_radius;
+};
+
+// The neighbourhood of the highest sample of a correlation surface; the first one in row-major
+// order where several are equal.
+struct PeakNeighbourhood {
+  // Where the highest sample lies, 0 <= x < tile_width, 0 <= y < tile_height. Sample (0, 0) is the
+  // shift 0; shifts over half a side are negative.
+  int x = 0;
+  int y = 0;
+  // (2 * peak_radius + 1)^2 samples, row-major, the highest one in the middle; the surface
+  // continues periodically.
+  std::span<const float> samples;
+  // Mean of the squares of all samples outside this neighbourhood.
+  float mean_square_outside = 0.0F;
+};
+
+// The last step of the correlation, for one tile: sub-pixel place, height, footprint, validity.
+//
+// sub-pixel   for each axis, with l, c, r the highest sample and its two neighbours: eq. 2.19 where
+// all
+//             are positive, else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5; 0
+//             where the denominator is not positive.
+// footprint   samples of the neighbourhood above max(3 * noise, height / 16), each weighted with
+// what
+//             it has above that; second central moments, plus 1/12 px^2 for a sample's own extent.
+// covariance  footprint moments times (noise / height)^2, plus 1e-6 px^2 on the diagonal.
+// valid       coverages >= kMinCoverage, height > kMinPeakToNoise * noise, and the highest sample
+//             not at a shift of exactly half a tile's side. Where not valid for want of a positive
+//             height, the offset is 0 and the covariance that of a uniform guess over the tile.
+TilePeak MeasurePeak(const PhaseCorrelationTables& tables, const PeakNeighbourhood& peak,
+                     float reference_coverage, float current_coverage);
+
+}  // namespace windhover

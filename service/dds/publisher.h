@@ -19,6 +19,10 @@ namespace windhover {
 // waiting  A write waits up to PublishOptions::max_blocking_ms for room where reliable subscribers
 //          lag behind, and not at all otherwise: a stalled subscriber slows a video down to two
 //          such waits a frame until its lease ends (10 s after its process stopped answering).
+// element  whpublish makes its publisher when it goes from NULL to READY, so that subscribers can
+// be
+//          waited for before frames flow, and shows `subscribers` (with notify) and the counters
+//          `homographies`, `detections`, `boxes`, `failed`, `omitted` as read-only properties.
 // memory   Samples are written from buffers that are made once; nothing is allocated per sample
 // here.
 class Publisher {
@@ -36,12 +40,14 @@ class Publisher {
   // not.
   static constexpr int kMaxDetections = 1024;
 
-  // Subscribers can find the stream from now on. `subscribers_changed`, where given, is called from
-  // a thread of the DDS library whenever the value of subscribers() may have changed; it must
-  // return soon, must not throw and must not call into this publisher except for subscribers() and
-  // counters(). It is not called any more once the destructor has returned.
+  // Called with the value of subscribers() whenever it may have changed.
+  using SubscribersChanged = std::function<void(int subscribers)>;
+
+  // Subscribers can find the stream from now on. `subscribers_changed`, where given, is called by a
+  // thread of the DDS library, perhaps before this constructor returns and not any more once the
+  // destructor has; it must return soon, must not throw and must not call into this publisher.
   // Throws OptionError for options out of range, DdsError where the bus cannot be used.
-  explicit Publisher(const PublishOptions& options, std::function<void()> subscribers_changed = {});
+  explicit Publisher(const PublishOptions& options, SubscribersChanged subscribers_changed = {});
   // As End(), and without waiting where End() has been called.
   ~Publisher();
 

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/dds/subscriber.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "service/dds/conversion.h"
+#include "service/dds/handles.h"
+#include "service/dds/log.h"
+#include "service/dds/participant.h"
+
+namespace windhover {
+namespace {
+
+using EndReason = Subscriber::EndReason;
+
+constexpr int kBatch = 16;
+
+// Samples lent by the reader's cache until this goes out of scope.
+class Loan {
+ public:
+  explicit Loan(dds_entity_t reader) : reader_(reader) {
+    count_ = CheckDds(dds_take(reader, data_.data(), infos_.data(), kBatch, kBatch), "dds_take");
+  }
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+  ~Loan() {
+    if (count_ > 0) dds_return_loan(reader_, data_.data(), count_);
+  }
+
+  int count() const { return count_; }
+  const void* data(int i) const { return data_[i]; }
+  const dds_sample_info_t& info(int i) const { return infos_[i]; }
+
+ private:
+  dds_entity_t reader_;
+  int count_ = 0;
+  std::array<void*, kBatch> data_{};
+  std::array<dds_sample_info_t, kBatch> infos_{};
+};
+
+// Tells from the state that comes with each sample when streams end. The state is of the moment
+// when the sample was taken, so an end is only reported once no sample is left.
+class Endings {
+ public:
+  using End = std::function<void(const std::string& stream, EndReason reason)>;
+
+  void See(const char* stream, const dds_sample_info_t& info, const End& end) {
+    auto known = streams_.find(std::string_view(stream));
+    if (known == streams_.end()) known = streams_.emplace(stream, Instance{}).first;
+    Instance& instance = known->second;
+    // The stream ended and started again between two samples.
+    const std::uint32_t ends = info.disposed_generation_count + info.no_writers_generation_count;
+    if (info.instance_handle == instance.handle && ends > instance.ends) {
+      end(known->first, EndReason::kEnded);
+    }
+    instance = {info.instance_handle, ends, info.instance_state};
+  }
+
+  // No sample is left.
+  void Report(const End& end) {
+    for (auto known = streams_.begin(); known != streams_.end();) {
+      if (known->second.state == DDS_IST_ALIVE) {
+        ++known;
+        continue;
+      }
+      const bool disposed = known->second.state == DDS_IST_NOT_ALIVE_DISPOSED;
+      end(known->first, disposed ? EndReason::kEnded : EndReason::kLost);
+      known = streams_.erase(known);
+    }
+  }
+
+ private:
+  struct Instance {
+    dds_instance_handle_t handle = DDS_HANDLE_NIL;
+    std::uint32_t ends = 0;
+    dds_instance_state_t state = DDS_IST_ALIVE;
+  };
+  std::map<std::string, Instance, std::less<>> streams_;
+};
+
+// One topic, its reader and what is known of its streams.
+class TopicReader {
+ public:
+  TopicReader(dds_entity_t participant, dds_entity_t waitset, const dds_topic_descriptor_t* type,
+              const char* name, dds_qos_t* qos)
+      : name_(name),
+        topic_(dds_create_topic(participant, type, name, nullptr, nullptr), "dds_create_topic"),
+        reader_(dds_create_reader(participant, topic_.get(), qos, nullptr), "dds_create_reader"),
+        something_to_take_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE),
+                           "dds_create_readcondition") {
+    CheckDds(dds_set_status_mask(reader_.get(), DDS_SUBSCRIPTION_MATCHED_STATUS |
+                                                    DDS_REQUESTED_INCOMPATIBLE_QOS_STATUS),
+             "dds_set_status_mask");
+    CheckDds(dds_waitset_attach(waitset, reader_.get(), 0), "dds_waitset_attach");
+    CheckDds(dds_waitset_attach(waitset, something_to_take_.get(), 0), "dds_waitset_attach");
+  }
+
+  // True where the number of publishers has changed.
+  bool UpdatePublishers() {
+    dds_requested_incompatible_qos_status_t incompatible;
+    CheckDds(dds_get_requested_incompatible_qos_status(reader_.get(), &incompatible),
+             "dds_get_requested_incompatible_qos_status");
+    if (incompatible.total_count_change > 0) {
+      Log()->warn("A publisher of {} offers less than is asked for (QoS policy {}): not matched",
+                  name_, incompatible.last_policy_id);
+    }
+    dds_subscription_matched_status_t matched;
+    CheckDds(dds_get_subscription_matched_status(reader_.get(), &matched),
+             "dds_get_subscription_matched_status");
+    publishers_ = static_cast<int>(matched.current_count);
+    return matched.total_count_change != 0 || matched.current_count_change != 0;
+  }
+
+  int publishers() const { return publishers_; }
+
+  // Takes all samples: calls stream_of(data) for each, then sample(data, info) for each that has
+  // valid data and belongs to the stream.
+  template <typename StreamOf, typename OnSample>
+  void TakeAll(const std::string& stream, StreamOf stream_of, OnSample sample,
+               const Endings::End& end) {
+    while (true) {
+      const Loan loan(reader_.get());
+      for (int i = 0; i < loan.count(); ++i) {
+        const char* name = stream_of(loan.data(i));
+        if (!stream.empty() && stream != name) continue;
+        endings_.See(name, loan.info(i), end);
+        if (loan.info(i).valid_data) sample(loan.data(i), loan.info(i));
+      }
+      if (loan.count() < kBatch) break;
+    }
+    endings_.Report(end);
+  }
+
+ private:
+  const char* name_;
+  int publishers_ = 0;
+  Endings endings_;
+  Entity topic_;
+  Entity reader_;
+  Entity something_to_take_;
+};
+
+}  // namespace
+
+struct Subscriber::State {
+  explicit State(const SubscribeOptions& options)
+      : stream(options.stream),
+        participant(options.domain),
+        waitset(dds_create_waitset(participant.get()), "dds_create_waitset"),
+        interrupt(dds_create_guardcondition(participant.get()), "dds_create_guardcondition") {
+    CheckDds(dds_waitset_attach(waitset.get(), interrupt.get(), 0), "dds_waitset_attach");
+    const Qos qos = MakeQos(options.reliable, 0, options.history_depth, options.partition);
+    if (options.homographies) {
+      homographies.emplace(participant.get(), waitset.get(), HomographyDescriptor(),
+                           kHomographyTopic, qos.get());
+    }
+    if (options.detections) {
+      detections.emplace(participant.get(), waitset.get(), DetectionsDescriptor(), kDetectionsTopic,
+                         qos.get());
+    }
+  }
+
+  void TellPublishers(const Handlers& handlers) {
+    bool changed = false;
+    std::optional<int> publishers;
+    for (auto* reader : {&homographies, &detections}) {
+      if (!reader->has_value()) continue;
+      changed = (*reader)->UpdatePublishers() || changed;
+      publishers = std::min(publishers.value_or((*reader)->publishers()), (*reader)->publishers());
+    }
+    if (changed && handlers.publishers_changed) handlers.publishers_changed(publishers.value_or(0));
+  }
+
+  // `sample` is the object that is used again for each sample.
+  template <typename Sample, typename StreamOf>
+  void Take(TopicReader& reader, Topic topic, StreamOf stream_of, Sample& sample,
+            const std::function<void(const Sample&)>& handler, const Handlers& handlers) {
+    reader.TakeAll(
+        stream, stream_of,
+        [&](const void* data, const dds_sample_info_t& info) {
+          if (!handler) return;
+          Read(data, sample);
+          sample.written_ns = info.source_timestamp;
+          handler(sample);
+        },
+        [&](const std::string& name, EndReason reason) {
+          if (handlers.end) handlers.end(name, topic, reason);
+        });
+  }
+
+  std::string stream;
+  HomographySample homography_sample;
+  DetectionsSample detections_sample;
+  Participant participant;
+  Entity waitset;
+  Entity interrupt;
+  std::optional<TopicReader> homographies;
+  std::optional<TopicReader> detections;
+};
+
+Subscriber::Subscriber(const SubscribeOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+
+Subscriber::~Subscriber() = default;
+
+bool Subscriber::Poll(std::chrono::nanoseconds longest, const Handlers& handlers) {
+  const dds_duration_t wait = longest.count() < 0 ? DDS_INFINITY : longest.count();
+  const int triggered =
+      CheckDds(dds_waitset_wait(state_->waitset.get(), nullptr, 0, wait), "dds_waitset_wait");
+  bool interrupted = false;
+  CheckDds(dds_take_guardcondition(state_->interrupt.get(), &interrupted),
+           "dds_take_guardcondition");
+  if (interrupted || triggered == 0) return false;
+  state_->TellPublishers(handlers);
+  if (state_->homographies) {
+    state_->Take(*state_->homographies, Topic::kHomography, HomographyStream,
+                 state_->homography_sample, handlers.homography, handlers);
+  }
+  if (state_->detections) {
+    state_->Take(*state_->detections, Topic::kDetections, DetectionsStream,
+                 state_->detections_sample, handlers.detections, handlers);
+  }
+  return true;
+}
+
+void Subscriber::Interrupt() { dds_set_guardcondition(state_->interrupt.get(), true); }
+
+}  // namespace windhover

@@ -25,8 +25,9 @@ class BackgroundSubtraction {
   void Push(const GrayImage& frame, const FrameRegistration& registration);
   // No frame follows in this window: what is held comes out without its future frames.
   void Drain();
-  // Evidence for the oldest frame that has not come out yet, once its window is complete; null until
-  // then. Each pushed frame comes out exactly once, in order. Call until null after Push and Drain.
+  // Evidence for the oldest frame that has not come out yet, once its window is complete; null
+  // until then. Each pushed frame comes out exactly once, in order. Call until null after Push and
+  // Drain.
   std::shared_ptr<const MotionEvidence> Pop();
   // Forgets everything that is held.
   void Reset();

@@ -9,10 +9,10 @@
 
 namespace windhover {
 
-// Registers the frames of a video one after the other (thesis 2.4): a global shift first, then tiled
-// phase correlation under the predicted homography, RANSAC, DLT and covariance-weighted estimation.
-// In anchor mode each frame is matched against a keyframe, in centre mode against its predecessor.
-// No allocation after the first frames. One thread at a time.
+// Registers the frames of a video one after the other (thesis 2.4): a global shift first, then
+// tiled phase correlation under the predicted homography, RANSAC, DLT and covariance-weighted
+// estimation. In anchor mode each frame is matched against a keyframe, in centre mode against its
+// predecessor. No allocation after the first frames. One thread at a time.
 class StreamRegistration {
  public:
   // Throws OptionError where the frame is smaller than the tile layout needs (the text says how
@@ -21,8 +21,8 @@ class StreamRegistration {
                      const RegistrationOptions& options);
   ~StreamRegistration();
 
-  // `frame` must have the size that was given. Never throws for what the picture shows: a frame that
-  // cannot be registered comes back as kLost and starts a new segment.
+  // `frame` must have the size that was given. Never throws for what the picture shows: a frame
+  // that cannot be registered comes back as kLost and starts a new segment.
   FrameRegistration Register(const GrayImage& frame);
 
   // Forgets all frames; the next one starts a new segment. Frame numbers count on.

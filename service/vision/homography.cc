@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/vision/homography.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "service/vision/homography_mle.h"
+
+namespace windhover {
+namespace {
+
+constexpr int kMinimalMatches = 4;
+
+// Moves the points' centroid to the origin and their RMS distance from it to sqrt(2).
+struct Normalisation {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double scale = 0.0;
+
+  Eigen::Vector2d operator()(const Eigen::Vector2d& x) const { return (x - centre) * scale; }
+  Eigen::Matrix3d Matrix() const {
+    Eigen::Matrix3d m;
+    m << scale, 0, -scale * centre.x(), 0, scale, -scale * centre.y(), 0, 0, 1;
+    return m;
+  }
+};
+
+template <typename PointOf>
+Normalisation Normalise(std::span<const PointMatch> matches, std::span<const std::uint8_t> use,
+                        PointOf point_of) {
+  Normalisation n;
+  int count = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (!use.empty() && use[i] == 0) continue;
+    n.centre += point_of(matches[i]);
+    ++count;
+  }
+  n.centre /= std::max(count, 1);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (!use.empty() && use[i] == 0) continue;
+    sum += (point_of(matches[i]) - n.centre).squaredNorm();
+  }
+  n.scale = sum > 0.0 ? std::sqrt(2.0 * count / sum) : 0.0;
+  return n;
+}
+
+double TwiceArea(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+}
+
+// Four matches determine a homography when no three of their points lie on a line; those that also
+// turn the other way round in the other picture belong to no view of a plane from one side.
+bool IsGoodSample(const std::array<const PointMatch*, 4>& sample) {
+  constexpr double kMinTwiceAreaPx2 = 50.0;
+  static constexpr int kTriples[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  for (const auto& t : kTriples) {
+    const double in_frame =
+        TwiceArea(sample[t[0]]->x_in_frame, sample[t[1]]->x_in_frame, sample[t[2]]->x_in_frame);
+    const double in_reference = TwiceArea(
+        sample[t[0]]->x_in_reference, sample[t[1]]->x_in_reference, sample[t[2]]->x_in_reference);
+    if (std::abs(in_frame) < kMinTwiceAreaPx2 || in_frame * in_reference <= 0.0) return false;
+  }
+  return true;
+}
+
+// The exact homography of four matches with h33 = 1, in coordinates relative to the first match so
+// that the 8x8 system is well conditioned.
+std::optional<Eigen::Matrix3d> HomographyOfFour(const std::array<const PointMatch*, 4>& sample) {
+  constexpr double kScale = 1.0 / 128.0;
+  const Eigen::Vector2d from = sample[0]->x_in_frame;
+  const Eigen::Vector2d to = sample[0]->x_in_reference;
+  Matrix8d a;
+  Eigen::Matrix<double, 8, 1> b;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d x = (sample[i]->x_in_frame - from) * kScale;
+    const Eigen::Vector2d u = (sample[i]->x_in_reference - to) * kScale;
+    a.row(2 * i) << x.x(), x.y(), 1, 0, 0, 0, -u.x() * x.x(), -u.x() * x.y();
+    a.row(2 * i + 1) << 0, 0, 0, x.x(), x.y(), 1, -u.y() * x.x(), -u.y() * x.y();
+    b.segment<2>(2 * i) = u;
+  }
+  const Eigen::Matrix<double, 8, 1> h = a.partialPivLu().solve(b);
+  if (!h.allFinite()) return std::nullopt;
+  Eigen::Matrix3d m;
+  m << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0;
+  const Normalisation n_from{from, kScale};
+  const Normalisation n_to{to, kScale};
+  return Eigen::Matrix3d(n_to.Matrix().inverse() * m * n_from.Matrix());
+}
+
+}  // namespace
+
+Eigen::Vector2d Project(const Eigen::Matrix3d& b_from_a, const Eigen::Vector2d& x_in_a) {
+  return (b_from_a * x_in_a.homogeneous()).hnormalized();
+}
+
+Matrix3 ToMatrix3(const Eigen::Matrix3d& m) {
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
+}
+
+Eigen::Matrix3d InverseHomography(const Eigen::Matrix3d& b_from_a) {
+  const Eigen::Matrix3d inverse = b_from_a.inverse();
+  return inverse / inverse(2, 2);
+}
+
+std::array<Eigen::Vector2d, 4> PictureCorners(int width, int height) {
+  return {Eigen::Vector2d(0, 0), Eigen::Vector2d(width - 1, 0),
+          Eigen::Vector2d(width - 1, height - 1), Eigen::Vector2d(0, height - 1)};
+}
+
+bool IsOrientationPreserving(const Eigen::Matrix3d& b_from_a, int width, int height) {
+  if (!b_from_a.allFinite() || b_from_a.determinant() <= 0.0) return false;
+  const auto corners = PictureCorners(width, height);
+  return std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& x) {
+    return b_from_a.row(2).dot(x.homogeneous()) > 0.0;
+  });
+}
+
+double OverlapShare(const Eigen::Matrix3d& b_from_a, int a_width, int a_height, int b_width,
+                    int b_height) {
+  constexpr int kPoints = 24;
+  int inside = 0;
+  for (int j = 0; j < kPoints; ++j) {
+    for (int i = 0; i < kPoints; ++i) {
+      const Eigen::Vector3d x = b_from_a * Eigen::Vector3d((i + 0.5) * a_width / kPoints - 0.5,
+                                                           (j + 0.5) * a_height / kPoints - 0.5, 1);
+      const double u = x.x() / x.z();
+      const double v = x.y() / x.z();
+      if (x.z() > 0.0 && u >= 0.0 && v >= 0.0 && u <= b_width - 1 && v <= b_height - 1) ++inside;
+    }
+  }
+  return static_cast<double>(inside) / (kPoints * kPoints);
+}
+
+std::optional<Eigen::Matrix3d> HomographyByDlt(std::span<const PointMatch> matches,
+                                               std::span<const std::uint8_t> use) {
+  const Normalisation n_frame =
+      Normalise(matches, use, [](const PointMatch& m) { return m.x_in_frame; });
+  const Normalisation n_reference =
+      Normalise(matches, use, [](const PointMatch& m) { return m.x_in_reference; });
+  if (n_frame.scale == 0.0 || n_reference.scale == 0.0) return std::nullopt;
+
+  Eigen::Matrix<double, 9, 9> ata = Eigen::Matrix<double, 9, 9>::Zero();
+  int count = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (!use.empty() && use[i] == 0) continue;
+    const Eigen::Vector2d x = n_frame(matches[i].x_in_frame);
+    const Eigen::Vector2d u = n_reference(matches[i].x_in_reference);
+    Eigen::Matrix<double, 2, 9> a;
+    a << x.x(), x.y(), 1, 0, 0, 0, -u.x() * x.x(), -u.x() * x.y(), -u.x(),  //
+        0, 0, 0, x.x(), x.y(), 1, -u.y() * x.x(), -u.y() * x.y(), -u.y();
+    ata.noalias() += a.transpose() * a;
+    ++count;
+  }
+  if (count < kMinimalMatches) return std::nullopt;
+
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(ata);
+  // A second vanishing eigenvalue means a family of homographies: the points are degenerate.
+  constexpr double kRelativeRank = 1e-10;
+  if (solver.info() != Eigen::Success ||
+      solver.eigenvalues()[1] < kRelativeRank * solver.eigenvalues()[8]) {
+    return std::nullopt;
+  }
+  const auto h = solver.eigenvectors().col(0);
+  Eigen::Matrix3d m;
+  m << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
+  m = n_reference.Matrix().inverse() * m * n_frame.Matrix();
+  if (!m.allFinite() || std::abs(m(2, 2)) < std::numeric_limits<double>::epsilon()) {
+    return std::nullopt;
+  }
+  return Eigen::Matrix3d(m / m(2, 2));
+}
+
+HomographyEstimator::HomographyEstimator(int frame_width, int frame_height,
+                                         const HomographyEstimatorOptions& options)
+    : width_(frame_width), height_(frame_height), options_(options) {}
+
+int HomographyEstimator::SelectInliers(std::span<const PointMatch> matches,
+                                       const Eigen::Matrix3d& model, double threshold_px) {
+  int count = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const double squared_px =
+        (matches[i].x_in_reference - Project(model, matches[i].x_in_frame)).squaredNorm();
+    inliers_[i] = squared_px <= threshold_px * threshold_px ? 1 : 0;  // NaN is no inlier
+    count += inliers_[i];
+  }
+  return count;
+}
+
+// MSAC: the score of a model is the sum of the squared distances, each cut off at the threshold.
+bool HomographyEstimator::Ransac(std::span<const PointMatch> matches, Eigen::Matrix3d* best) {
+  const double cut = options_.ransac_threshold_px * options_.ransac_threshold_px;
+  const auto count = static_cast<std::uint32_t>(matches.size());
+  std::minstd_rand random(12345);
+  double best_score = std::numeric_limits<double>::infinity();
+  int iterations = options_.max_ransac_iterations;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    std::array<const PointMatch*, 4> sample;
+    for (std::size_t i = 0; i < sample.size();) {
+      sample[i] = &matches[random() % count];
+      if (std::find(sample.begin(), sample.begin() + i, sample[i]) == sample.begin() + i) ++i;
+    }
+    if (!IsGoodSample(sample)) continue;
+    const auto model = HomographyOfFour(sample);
+    if (!model) continue;
+    double score = 0.0;
+    int inliers = 0;
+    for (const PointMatch& match : matches) {
+      const double squared_px =
+          (match.x_in_reference - Project(*model, match.x_in_frame)).squaredNorm();
+      if (squared_px <= cut) ++inliers;
+      score += squared_px <= cut ? squared_px : cut;
+    }
+    if (!(score < best_score)) continue;
+    best_score = score;
+    *best = *model;
+    // Enough iterations to have drawn one clean sample with probability 0.999.
+    const double clean = std::pow(static_cast<double>(inliers) / count, 4);
+    if (clean >= 1.0 - 1e-9) break;
+    if (clean > 1e-9) {
+      iterations =
+          std::min<int>(iterations, std::max(20.0, std::ceil(std::log(1e-3) / std::log1p(-clean))));
+    }
+  }
+  return std::isfinite(best_score);
+}
+
+std::optional<HomographyEstimate> HomographyEstimator::Estimate(
+    std::span<const PointMatch> matches) {
+  inliers_.assign(matches.size(), 0);
+  Eigen::Matrix3d model;
+  if (matches.size() < kMinimalMatches || !Ransac(matches, &model)) return std::nullopt;
+
+  // Minimal samples extrapolate: the first least-squares fit takes matches a little further away.
+  int count = SelectInliers(matches, model, 1.5 * options_.ransac_threshold_px);
+  std::optional<HomographyFit> fit;
+  for (int round = 0; round < 3; ++round) {
+    const auto linear = HomographyByDlt(matches, inliers_);
+    if (!linear) return std::nullopt;
+    fit = RefineHomography(matches, inliers_, *linear, width_, height_);
+    if (!fit) return std::nullopt;
+    const int before = count;
+    count = SelectInliers(matches, fit->reference_from_frame, options_.ransac_threshold_px);
+    if (count < kMinimalMatches) return std::nullopt;
+    if (round > 0 && count == before) break;
+  }
+  if (!IsOrientationPreserving(fit->reference_from_frame, width_, height_)) return std::nullopt;
+
+  HomographyEstimate estimate;
+  estimate.reference_from_frame = fit->reference_from_frame;
+  estimate.corner_covariance = fit->corner_covariance;
+  estimate.inliers = count;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (inliers_[i] == 0) continue;
+    sum += (matches[i].x_in_reference - Project(fit->reference_from_frame, matches[i].x_in_frame))
+               .squaredNorm();
+  }
+  estimate.residual_px = std::sqrt(sum / count);
+  return estimate;
+}
+
+}  // namespace windhover

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/vision/tile_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "service/options/option.h"
+
+namespace windhover {
+namespace {
+
+constexpr double kStridePerSide = 0.75;  // neighbours overlap by 25 %
+constexpr double kMinSidePx = 24.0;
+constexpr int kMinTransform = 16;
+constexpr int kMaxTransform = 512;
+
+// How many tile sides a row of `count` overlapping tiles measures.
+double SidesAlong(int count) { return 1.0 + kStridePerSide * (count - 1); }
+
+int RoundToTransform(double side_px, int picture_px) {
+  int side = 1 << std::lround(std::log2(side_px));
+  side = std::clamp(side, kMinTransform, kMaxTransform);
+  while (side > picture_px && side > kMinTransform) side /= 2;
+  return side;
+}
+
+int Origin(int index, int count, int side, int picture_px) {
+  if (count == 1) return (picture_px - side) / 2;
+  return static_cast<int>(
+      std::lround(static_cast<double>(index) * (picture_px - side) / (count - 1)));
+}
+
+}  // namespace
+
+TileLayout UniformTileLayout(int width, int height, int columns, int rows) {
+  const double ideal_width = width / SidesAlong(columns);
+  const double ideal_height = height / SidesAlong(rows);
+  if (ideal_width < kMinSidePx || ideal_height < kMinSidePx) {
+    const auto needed = [](int count) {
+      return std::to_string(static_cast<int>(std::ceil(kMinSidePx * SidesAlong(count))));
+    };
+    throw OptionError("frames of " + std::to_string(width) + "x" + std::to_string(height) +
+                      " px are too small for " + std::to_string(columns) + "x" +
+                      std::to_string(rows) + " tiles: at least " + needed(columns) + "x" +
+                      needed(rows) + " px are needed, or fewer tile-columns and tile-rows");
+  }
+  TileLayout layout;
+  layout.tile_width = RoundToTransform(ideal_width, width);
+  layout.tile_height = RoundToTransform(ideal_height, height);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      layout.tiles.push_back({Origin(column, columns, layout.tile_width, width),
+                              Origin(row, rows, layout.tile_height, height)});
+    }
+  }
+  return layout;
+}
+
+}  // namespace windhover

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "gpu-kernels/phase_correlation/phase_correlation.h"
+
+namespace windhover {
+
+// Tiles spread evenly over a picture (thesis 2.4.2).
+struct TileLayout {
+  int tile_width = 0;
+  int tile_height = 0;
+  std::vector<TileOrigin> tiles;  // row by row
+};
+
+// A uniform grid of columns x rows tiles that overlap by about a quarter. Their sides are rounded
+// to the nearest power of two, which transforms well; the grid keeps reaching from border to
+// border, so that the overlap takes up the difference. Throws OptionError where tiles would be
+// narrower than 24 px before rounding: the text says how large the picture must be.
+TileLayout UniformTileLayout(int width, int height, int columns, int rows);
+
+}  // namespace windhover

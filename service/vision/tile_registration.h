@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gpu-kernels/backend.h"
+#include "gpu-kernels/phase_correlation/phase_correlation.h"
+#include "service/options/options.h"
+#include "service/vision/homography.h"
+#include "service/vision/types.h"
+
+namespace windhover {
+
+// A frame laid over a reference picture of the same size.
+struct TileMeasurement {
+  Eigen::Matrix3d reference_from_frame = Eigen::Matrix3d::Identity();  // h33 = 1
+  Matrix8d corner_covariance = Matrix8d::Zero();                       // see HomographyEstimate
+  int inliers = 0;
+  int tiles = 0;
+  double residual_px = 0.0;
+  double overlap = 0.0;
+  RegistrationQuality quality = RegistrationQuality::kLost;
+};
+
+// Tiled phase correlation between a kept reference picture and frames (thesis 2.4.2, 2.4.3). The
+// frame is sampled under a predicted homography, so that tiles match however far and turned it is;
+// where the prediction was off by so much that the tiles saw different ground, they are matched
+// once more under the first result. Keeps its working memory; one thread at a time.
+class TileRegistration {
+ public:
+  // Throws OptionError where the pictures are too small for the tiles.
+  TileRegistration(Backend& backend, int width, int height, const RegistrationOptions& options);
+
+  // Memory for the spectra of one reference picture.
+  std::unique_ptr<TileSpectra> MakeSpectra() const;
+  void SetReference(const GrayImage& picture, TileSpectra& reference);
+
+  // Whether the reference has enough texture to be matched at all.
+  bool HasTexture(const TileSpectra& reference);
+
+  // quality is kLost, and all else at its default, where no homography was found.
+  TileMeasurement Measure(const TileSpectra& reference, const GrayImage& frame,
+                          const Eigen::Matrix3d& predicted_frame_from_reference);
+
+ private:
+  TileMeasurement MeasureOnce(const TileSpectra& reference, const GrayImage& frame,
+                              const Eigen::Matrix3d& predicted_frame_from_reference);
+  bool NeedsSecondPass(const Eigen::Matrix3d& predicted_frame_from_reference,
+                       const Eigen::Matrix3d& reference_from_frame) const;
+  RegistrationQuality Judge(const TileMeasurement& measurement, int peaks) const;
+
+  int width_;
+  int height_;
+  RegistrationOptions options_;
+  std::unique_ptr<PhaseCorrelation> correlation_;
+  std::unique_ptr<TileSpectra> current_;
+  HomographyEstimator estimator_;
+  std::vector<TilePeak> peaks_;
+  std::vector<PointMatch> matches_;
+};
+
+}  // namespace windhover

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "service/dds/log.h"
@@ -74,6 +75,7 @@ const char* UserConfiguration() {
 }  // namespace
 
 // The configuration of a domain that stays on loopback, as long as a participant of ours needs it.
+// Made and destroyed under DomainMutex().
 class Participant::Domain {
  public:
   static std::shared_ptr<Domain> Get(int id) {
@@ -91,6 +93,8 @@ class Participant::Domain {
     handle_ = dds_create_domain(static_cast<dds_domainid_t>(id), kLoopbackOnly);
     if (handle_ == DDS_RETCODE_PRECONDITION_NOT_MET) return;
     if (handle_ < 0) Refuse(id, handle_, log.text());
+    static std::set<int> told;
+    if (!told.insert(id).second) return;
     Log()->info(
         "DDS domain {} stays on this machine. To open it to a network, set CYCLONEDDS_URI, e.g. to "
         "'<General><Interfaces><NetworkInterface name=\"eth0\"/></Interfaces></General>'",

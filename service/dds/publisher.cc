@@ -63,6 +63,7 @@ class TopicWriter {
 
   static void OnIncompatible(dds_entity_t, const dds_offered_incompatible_qos_status_t status,
                              void* self) {
+    if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;
     Log()->warn("A subscriber of {} wants more than is offered (QoS policy {}): not matched",
                 static_cast<TopicWriter*>(self)->name_, status.last_policy_id);
   }

@@ -104,7 +104,8 @@ class TopicReader {
     dds_requested_incompatible_qos_status_t incompatible;
     CheckDds(dds_get_requested_incompatible_qos_status(reader_.get(), &incompatible),
              "dds_get_requested_incompatible_qos_status");
-    if (incompatible.total_count_change > 0) {
+    if (incompatible.total_count_change > 0 &&
+        incompatible.last_policy_id != DDS_PARTITION_QOS_POLICY_ID) {
       Log()->warn("A publisher of {} offers less than is asked for (QoS policy {}): not matched",
                   name_, incompatible.last_policy_id);
     }

@@ -66,6 +66,16 @@ void Buffer::Unmap(std::byte* pointer) noexcept {
 Queue::Queue(const Context& context)
     : device_(context.name()), context_(context.handle()), queue_(MakeQueue(context)) {}
 
+void Queue::EnqueueWrite(const Buffer& buffer, const void* bytes, std::size_t size_bytes) {
+  WINDHOVER_CL(device_, clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_FALSE, 0, size_bytes,
+                                             bytes, 0, nullptr, nullptr));
+}
+
+void Queue::Read(const Buffer& buffer, void* bytes, std::size_t size_bytes) {
+  WINDHOVER_CL(device_, clEnqueueReadBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, size_bytes,
+                                            bytes, 0, nullptr, nullptr));
+}
+
 void Queue::Finish() { WINDHOVER_CL(device_, clFinish(queue_.get())); }
 
 Context::Context(const Device& device, ProgramCache cache)

@@ -43,6 +43,11 @@ class Queue {
  public:
   explicit Queue(const Context& context);
 
+  // Copies bytes to the start of a buffer; they must stay where they are until Finish.
+  void EnqueueWrite(const Buffer& buffer, const void* bytes, std::size_t size_bytes);
+  // Copies bytes from the start of a buffer, after all that was enqueued has run: no Finish needed.
+  void Read(const Buffer& buffer, void* bytes, std::size_t size_bytes);
+
   // Waits until all that was enqueued has run. Throws DeviceError where some of it failed.
   void Finish();
 
@@ -76,7 +81,8 @@ class Context : public std::enable_shared_from_this<Context> {
   // Lanes of the device's float vectors, 1 to 16; 1 on GPUs.
   int native_float_lanes() const { return native_float_lanes_; }
 
-  // The program of an embedded source (kernel_sources.h) under compiler options such as "-DV=16";
+  // The program of one embedded source, or several joined (kernel_sources.h), under compiler
+  // options such as "-DV=16";
   // "-cl-std=CL1.2" is always added. Compiled once in a process, and read from the program cache
   // where that has it. Throws DeviceError with the compiler's log.
   Program Compile(std::string_view source, const std::string& options = "");

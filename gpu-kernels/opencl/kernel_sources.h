@@ -9,8 +9,11 @@ namespace windhover {
 // with a #line that makes compiler messages name the file.
 extern const std::string_view kDecimateCl;
 extern const std::string_view kDifferenceThresholdCl;
-extern const std::string_view kPhaseCorrelationCl;
+extern const std::string_view kFindPeakCl;
+extern const std::string_view kLanesCl;
+extern const std::string_view kSampleTilesCl;
 extern const std::string_view kTemporalMedianCl;
+extern const std::string_view kTransformCl;
 extern const std::string_view kWarpCl;
 
 }  // namespace windhover

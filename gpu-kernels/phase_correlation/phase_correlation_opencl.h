@@ -10,11 +10,16 @@ namespace windhover {
 
 // How the kernels are laid out on a device. Changes the speed, not the result.
 struct PhaseCorrelationLayout {
-  // Rows or columns that one work-item transforms at a time: 1, 2, 4, 8 or 16.
-  int lanes = 16;
+  // Columns that one work-item transforms at a time, one a vector lane: 1, 2, 4, 8 or 16.
+  int lanes = 1;
+  // Rows of a tile that one work-item samples: 1, 2, 4, 8 or 16.
+  int sample_rows = 1;
+  // Whether it works on a whole row at a time, or on as many samples as there are lanes.
+  bool sample_whole_rows = false;
   // Work-items that look for the peak of one tile together: a power of two, 1 to 256.
-  int peak_group = 1;
+  int peak_group = 64;
 
+  // CPUs want few work-items with much to do, of the vector width they have; GPUs the opposite.
   static PhaseCorrelationLayout For(const opencl::Context& context);
 };
 

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Tiled phase correlation (thesis 2.4.1), common part. The sources of this folder are compiled as
+// one program: this file, then transform.cl, sample_tiles.cl, find_peak.cl.
+//
+// Two real tiles of one picture travel as the real and the imaginary part of one complex transform;
+// their spectra are told apart by symmetry where they meet the other picture's. Complex data is
+// planar: for each pair of tiles a plane of real parts, then one of imaginary parts, H x W each.
+//
+// Macros given to the compiler:
+//   W, H     tile sides in px, powers of two, 16 to 512
+//   V        vector lanes: 1, 2, 4, 8 or 16
+//   ROWS     tile rows that a work-item samples, a divisor of H
+//   BATCH    samples of a row that are worked on together: a divisor of W, a multiple of V
+//   GROUP    work-items that look for a tile's peak together, a power of two
+//   RADIUS   half side of a peak's neighbourhood, px
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+
+#if V == 1
+typedef float Lanes;
+typedef int IntLanes;
+#define LOAD(pointer) (*(pointer))
+#define STORE(value, pointer) (*(pointer) = (value))
+#define TO_INT(value) convert_int_rtz(value)
+#define TO_FLOAT(value) convert_float(value)
+#define SHORTS_TO_INT(pointer) ((int)*(pointer))
+#else
+typedef JOIN(float, V) Lanes;
+typedef JOIN(int, V) IntLanes;
+#define LOAD(pointer) JOIN(vload, V)(0, pointer)
+#define STORE(value, pointer) JOIN(vstore, V)(value, 0, pointer)
+#define TO_INT(value) JOIN(JOIN(convert_int, V), _rtz)(value)
+#define TO_FLOAT(value) JOIN(convert_float, V)(value)
+#define SHORTS_TO_INT(pointer) JOIN(convert_int, V)(LOAD(pointer))
+#endif
+
+#define SAMPLES (W * H)
+// Stands for a sample that the picture does not have; grey levels are not negative.
+#define UNSEEN (-1.0f)
+
+// Numbers of the lanes, 0 to V - 1.
+IntLanes LaneNumbers(void) {
+#if V == 1
+  return 0;
+#elif V == 2
+  return (int2)(0, 1);
+#elif V == 4
+  return (int4)(0, 1, 2, 3);
+#elif V == 8
+  return (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  return (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+}
+
+float SumOfLanes(Lanes value) {
+#if V >= 16
+  const float8 value8 = value.lo + value.hi;
+#elif V == 8
+  const float8 value8 = value;
+#endif
+#if V >= 8
+  const float4 value4 = value8.lo + value8.hi;
+#elif V == 4
+  const float4 value4 = value;
+#endif
+#if V >= 4
+  const float2 value2 = value4.lo + value4.hi;
+#elif V == 2
+  const float2 value2 = value;
+#endif
+#if V >= 2
+  return value2.x + value2.y;
+#else
+  return value;
+#endif
+}
+
+float MaxOfLanes(Lanes value) {
+#if V >= 16
+  const float8 value8 = fmax(value.lo, value.hi);
+#elif V == 8
+  const float8 value8 = value;
+#endif
+#if V >= 8
+  const float4 value4 = fmax(value8.lo, value8.hi);
+#elif V == 4
+  const float4 value4 = value;
+#endif
+#if V >= 4
+  const float2 value2 = fmax(value4.lo, value4.hi);
+#elif V == 2
+  const float2 value2 = value;
+#endif
+#if V >= 2
+  return fmax(value2.x, value2.y);
+#else
+  return value;
+#endif
+}
+
+Lanes Reversed(Lanes v) {
+#if V == 1
+  return v;
+#elif V == 2
+  return v.yx;
+#elif V == 4
+  return v.wzyx;
+#elif V == 8
+  return v.s76543210;
+#else
+  return v.sfedcba9876543210;
+#endif
+}

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu-kernels/phase_correlation/phase_correlation_opencl.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gpu-kernels/opencl/kernel.h"
+#include "gpu-kernels/opencl/kernel_sources.h"
+#include "gpu-kernels/phase_correlation/phase_correlation_tables.h"
+#include "gpu-kernels/warp/warp_coefficients.h"
+
+namespace windhover {
+namespace {
+
+using opencl::Buffer;
+using opencl::Context;
+using opencl::GlobalMemory;
+using opencl::Kernel;
+using opencl::LocalMemory;
+using opencl::Program;
+using opencl::Queue;
+
+// Spectra are read up to this far past their end; see LoadMirroredBins.
+constexpr std::size_t kSpareFloats = 1;
+
+std::unique_ptr<Buffer> MakeFloats(const Context& context, std::size_t count) {
+  return context.Allocate(count * sizeof(float));
+}
+
+template <typename T>
+std::unique_ptr<Buffer> MakeTable(const Context& context, Queue& queue,
+                                  const std::vector<T>& values) {
+  auto buffer = context.Allocate(values.size() * sizeof(T));
+  queue.EnqueueWrite(*buffer, values.data(), values.size() * sizeof(T));
+  queue.Finish();
+  return buffer;
+}
+
+// exp(-2 pi i k / side), real and imaginary part in turn.
+std::vector<float> Twiddles(int side) {
+  std::vector<float> values;
+  for (int k = 0; k < side; ++k) {
+    const double angle = -2.0 * std::numbers::pi * k / side;
+    values.push_back(static_cast<float>(std::cos(angle)));
+    values.push_back(static_cast<float>(std::sin(angle)));
+  }
+  return values;
+}
+
+// Where TransformLanes leaves each frequency: a split of a block by `radix` takes frequency
+// radix * q + m to place q of sub-block m.
+std::vector<cl_int> FrequencyOrder(int side) {
+  std::vector<cl_int> order;
+  for (int k = 0; k < side; ++k) {
+    int place = 0;
+    int rest = k;
+    for (int block = side; block > 1;) {
+      const int radix = block == 16 || block == 4 ? 4 : 8;
+      block /= radix;
+      place += rest % radix * block;
+      rest /= radix;
+    }
+    order.push_back(place);
+  }
+  return order;
+}
+
+// The weights of the whole spectrum from those of its left half.
+std::vector<float> FullSpectralWeight(const PhaseCorrelationTables& tables) {
+  std::vector<float> full;
+  for (int y = 0; y < tables.tile_height; ++y) {
+    for (int x = 0; x < tables.tile_width; ++x) {
+      const int bin = std::min(x, tables.tile_width - x);
+      full.push_back(tables.spectral_weight[y * tables.spectrum_width + bin]);
+    }
+  }
+  return full;
+}
+
+class PhaseCorrelationOpenCl;
+
+class TileSpectraOpenCl : public TileSpectra {
+ public:
+  TileSpectraOpenCl(const PhaseCorrelationOpenCl* owner, std::unique_ptr<Buffer> spectra_memory,
+                    std::unique_ptr<Buffer> coverage_memory)
+      : owner(owner), spectra(std::move(spectra_memory)), coverage(std::move(coverage_memory)) {}
+
+  const PhaseCorrelationOpenCl* const owner;
+  const std::unique_ptr<Buffer> spectra;
+  const std::unique_ptr<Buffer> coverage;
+};
+
+class PhaseCorrelationOpenCl : public PhaseCorrelation {
+ public:
+  PhaseCorrelationOpenCl(Context& context, const PhaseCorrelationSettings& settings,
+                         const PhaseCorrelationLayout& layout)
+      : settings_(settings),
+        tables_(settings),
+        layout_(layout),
+        context_(context.shared_from_this()),
+        pairs_((settings.tiles.size() + 1) / 2),
+        samples_(static_cast<std::size_t>(tables_.tile_width) * tables_.tile_height),
+        peak_group_(std::min(layout.peak_group, tables_.tile_height)),
+        record_floats_(5 + PeakSide() * PeakSide()),
+        queue_(context),
+        window_x_(MakeTable(context, queue_, tables_.window_x)),
+        window_y_(MakeTable(context, queue_, tables_.window_y)),
+        spectral_weight_(MakeTable(context, queue_, FullSpectralWeight(tables_))),
+        twiddle_x_(MakeTable(context, queue_, Twiddles(tables_.tile_width))),
+        twiddle_y_(MakeTable(context, queue_, Twiddles(tables_.tile_height))),
+        order_x_(MakeTable(context, queue_, FrequencyOrder(tables_.tile_width))),
+        order_y_(MakeTable(context, queue_, FrequencyOrder(tables_.tile_height))),
+        from_tile_(MakeFloats(context, 9 * settings.tiles.size())),
+        row_sums_(MakeFloats(context, 2 * pairs_ * 2 * tables_.tile_height)),
+        tiles_(MakeFloats(context, pairs_ * 2 * samples_)),
+        columns_(MakeFloats(context, pairs_ * 2 * samples_)),
+        records_(MakeFloats(context, settings.tiles.size() * record_floats_)),
+        host_from_tile_(9 * settings.tiles.size()),
+        host_records_(settings.tiles.size() * record_floats_),
+        kernels_(Compile()) {}
+
+  const PhaseCorrelationSettings& settings() const override { return settings_; }
+
+  std::unique_ptr<TileSpectra> MakeSpectra() const override {
+    auto spectra = std::make_unique<TileSpectraOpenCl>(
+        this, MakeFloats(*context_, pairs_ * 2 * samples_ + kSpareFloats),
+        MakeFloats(*context_, 2 * pairs_));
+    const auto clear = [](Buffer& buffer) {
+      std::byte* bytes = buffer.Map(Access::kWrite);
+      std::fill_n(bytes, buffer.size_bytes(), std::byte{0});
+      buffer.Unmap(bytes);
+    };
+    clear(*spectra->spectra);
+    clear(*spectra->coverage);
+    return spectra;
+  }
+
+  void Transform(const GrayImage& picture, const Matrix3& picture_from_grid,
+                 TileSpectra& spectra) override {
+    const TileSpectraOpenCl& own = Own(spectra);
+    if (picture.empty()) throw std::invalid_argument("phase correlation: the picture is empty");
+    MakeWarpCoefficients(picture_from_grid);  // refuses what is not finite
+    for (std::size_t i = 0; i < settings_.tiles.size(); ++i) {
+      const TileOrigin& origin = settings_.tiles[i];
+      const WarpCoefficients from_tile =
+          MakeWarpCoefficients(WithOrigin(picture_from_grid, origin.x, origin.y));
+      std::copy(from_tile.begin(), from_tile.end(), host_from_tile_.begin() + 9 * i);
+    }
+    queue_.EnqueueWrite(*from_tile_, host_from_tile_.data(),
+                        host_from_tile_.size() * sizeof(float));
+    const std::size_t row_items = tables_.tile_height / layout_.sample_rows;
+    kernels_.sample.Enqueue(
+        queue_, {.global = {row_items, 2 * pairs_, 1}}, picture, picture.width(), picture.height(),
+        static_cast<cl_int>(picture.stride()), *from_tile_,
+        static_cast<cl_int>(settings_.tiles.size()), *window_x_, *window_y_, *tiles_, *row_sums_);
+    kernels_.transform_samples.Enqueue(queue_, ColumnsOf(tables_.tile_width), *tiles_, *row_sums_,
+                                       *window_x_, *window_y_, tables_.window_sum, *twiddle_y_,
+                                       *order_y_, *own.coverage, *columns_);
+    kernels_.transform_columns.Enqueue(queue_, ColumnsOf(tables_.tile_height), *columns_,
+                                       *twiddle_x_, *order_x_, *own.spectra);
+    queue_.Finish();
+  }
+
+  void Correlate(const TileSpectra& reference, const TileSpectra& current,
+                 std::span<TilePeak> peaks) override {
+    const TileSpectraOpenCl& own_reference = Own(reference);
+    const TileSpectraOpenCl& own_current = Own(current);
+    if (peaks.size() != settings_.tiles.size()) {
+      throw std::invalid_argument("phase correlation: there must be one peak a tile");
+    }
+    kernels_.transform_cross_power.Enqueue(
+        queue_, ColumnsOf(tables_.tile_width), *own_reference.spectra, *own_current.spectra,
+        *spectral_weight_, tables_.noise_power, *twiddle_y_, *order_y_, *columns_);
+    kernels_.transform_columns.Enqueue(queue_, ColumnsOf(tables_.tile_height), *columns_,
+                                       *twiddle_x_, *order_x_, *tiles_);
+    const std::size_t group = peak_group_;
+    kernels_.find_peak.Enqueue(
+        queue_, {.global = {group * peaks.size(), 1, 1}, .local = {group, 1, 1}}, *tiles_,
+        *own_reference.coverage, *own_current.coverage, *records_,
+        LocalMemory{tables_.tile_height * sizeof(float)}, LocalMemory{group * sizeof(float)},
+        LocalMemory{group * sizeof(cl_int)});
+    queue_.Read(*records_, host_records_.data(), host_records_.size() * sizeof(float));
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+      peaks[i] =
+          PeakFromRecord(std::span(host_records_).subspan(i * record_floats_, record_floats_));
+    }
+  }
+
+ private:
+  struct Kernels {
+    Kernel<GlobalMemory, cl_int, cl_int, cl_int, GlobalMemory, cl_int, GlobalMemory, GlobalMemory,
+           GlobalMemory, GlobalMemory>
+        sample;
+    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, GlobalMemory, cl_float, GlobalMemory,
+           GlobalMemory, GlobalMemory, GlobalMemory>
+        transform_samples;
+    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, GlobalMemory> transform_columns;
+    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, cl_float, GlobalMemory, GlobalMemory,
+           GlobalMemory>
+        transform_cross_power;
+    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, GlobalMemory, LocalMemory, LocalMemory,
+           LocalMemory>
+        find_peak;
+  };
+
+  int PeakSide() const { return 2 * tables_.peak_radius + 1; }
+
+  Kernels Compile() {
+    std::string source;
+    for (const std::string_view part : {kLanesCl, kTransformCl, kSampleTilesCl, kFindPeakCl}) {
+      source += part;
+    }
+    const auto define = [](const char* name, int value) {
+      return std::string("-D") + name + "=" + std::to_string(value) + " ";
+    };
+    const int batch = layout_.sample_whole_rows ? tables_.tile_width : layout_.lanes;
+    const Program program = context_->Compile(
+        source, define("W", tables_.tile_width) + define("H", tables_.tile_height) +
+                    define("V", layout_.lanes) + define("ROWS", layout_.sample_rows) +
+                    define("BATCH", batch) + define("GROUP", peak_group_) +
+                    define("RADIUS", tables_.peak_radius) + "-cl-mad-enable");
+    return {{program, "SampleTiles"},
+            {program, "TransformSamples"},
+            {program, "TransformColumns"},
+            {program, "TransformCrossPower"},
+            {program, "FindPeak"}};
+  }
+
+  // One work-item for each of the columns' groups, for all pairs of tiles.
+  opencl::WorkSize ColumnsOf(int columns) const {
+    return {.global = {static_cast<std::size_t>(columns / layout_.lanes), pairs_, 1}};
+  }
+
+  const TileSpectraOpenCl& Own(const TileSpectra& spectra) const {
+    const auto* own = dynamic_cast<const TileSpectraOpenCl*>(&spectra);
+    if (own == nullptr || own->owner != this) {
+      throw std::invalid_argument("phase correlation: spectra of another operator");
+    }
+    return *own;
+  }
+
+  // The record's layout is that of find_peak.cl.
+  TilePeak PeakFromRecord(std::span<const float> record) const {
+    PeakNeighbourhood peak;
+    peak.x = static_cast<int>(record[0]);
+    peak.y = static_cast<int>(record[1]);
+    peak.mean_square_outside = record[2];
+    peak.samples = record.subspan(5);
+    return MeasurePeak(tables_, peak, record[3], record[4]);
+  }
+
+  const PhaseCorrelationSettings settings_;
+  const PhaseCorrelationTables tables_;
+  const PhaseCorrelationLayout layout_;
+  const std::shared_ptr<Context> context_;
+  const std::size_t pairs_;
+  const std::size_t samples_;
+  const int peak_group_;
+  const std::size_t record_floats_;
+  Queue queue_;
+  const std::unique_ptr<Buffer> window_x_;
+  const std::unique_ptr<Buffer> window_y_;
+  const std::unique_ptr<Buffer> spectral_weight_;
+  const std::unique_ptr<Buffer> twiddle_x_;
+  const std::unique_ptr<Buffer> twiddle_y_;
+  const std::unique_ptr<Buffer> order_x_;
+  const std::unique_ptr<Buffer> order_y_;
+  const std::unique_ptr<Buffer> from_tile_;
+  const std::unique_ptr<Buffer> row_sums_;
+  const std::unique_ptr<Buffer> tiles_;    // samples of the tiles, or their correlation surfaces
+  const std::unique_ptr<Buffer> columns_;  // what the first step of a transform leaves
+  const std::unique_ptr<Buffer> records_;
+  std::vector<float> host_from_tile_;
+  std::vector<float> host_records_;
+  Kernels kernels_;
+};
+
+}  // namespace
+
+PhaseCorrelationLayout PhaseCorrelationLayout::For(const Context& context) {
+  if (!context.is_cpu()) return {};
+  const int native = context.native_float_lanes();
+  return {.lanes = native >= 16  ? 16
+                   : native >= 8 ? 8
+                                 : 4,
+          .sample_rows = 8,
+          .sample_whole_rows = true,
+          .peak_group = 1};
+}
+
+std::unique_ptr<PhaseCorrelation> MakePhaseCorrelationOpenCl(
+    Context& context, const PhaseCorrelationSettings& settings,
+    const PhaseCorrelationLayout& layout) {
+  return std::make_unique<PhaseCorrelationOpenCl>(context, settings, layout);
+}
+
+}  // namespace windhover

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// A row of samples: where the four source pixels of each lie, its place between them, whether it is
+// seen. The homogeneous coordinates along the row are origin + step * x.
+void LocateSamples(float3 origin, float3 step, int first, int width, int height, int stride,
+                   int* offsets, float* fraction_x, float* fraction_y, float* seen) {
+  const float last_x = (float)(width - 1);
+  const float last_y = (float)(height - 1);
+  const int last_left = max(width - 2, 0);
+  const int last_top = max(height - 2, 0);
+  for (int i = 0; i < BATCH; i += V) {
+    const Lanes x = TO_FLOAT(LaneNumbers() + (first + i));
+    const Lanes w = origin.z + step.z * x;
+    const Lanes inverse = 1.0f / w;
+    const Lanes u = (origin.x + step.x * x) * inverse;
+    const Lanes v = (origin.y + step.y * x) * inverse;
+    const IntLanes inside = (w > 0.0f) & (u >= 0.0f) & (v >= 0.0f) & (u <= last_x) & (v <= last_y);
+    const Lanes safe_u = select((Lanes)(0.0f), u, inside);
+    const Lanes safe_v = select((Lanes)(0.0f), v, inside);
+    const IntLanes left = min(TO_INT(safe_u), (IntLanes)(last_left));
+    const IntLanes top = min(TO_INT(safe_v), (IntLanes)(last_top));
+    STORE(top * stride + left, offsets + i);
+    STORE(safe_u - TO_FLOAT(left), fraction_x + i);
+    STORE(safe_v - TO_FLOAT(top), fraction_y + i);
+    STORE(select((Lanes)(0.0f), (Lanes)(1.0f), inside), seen + i);
+  }
+}
+
+// Samples all tiles bilinearly; UNSEEN where the picture has no pixel. One work-item does ROWS rows
+// of one tile. `from_tile` holds, for each tile, the 9 elements of picture_from_tile. `row_sums`
+// takes, for each tile, H window-weighted sums of its rows' grey levels, then H of their seen
+// samples. Tiles past `tile_count` are not seen at all.
+__kernel void SampleTiles(__global const uchar* restrict picture, int width, int height, int stride,
+                          __global const float* restrict from_tile, int tile_count,
+                          __global const float* restrict window_x,
+                          __global const float* restrict window_y,
+                          __global float* restrict samples, __global float* restrict row_sums) {
+  const int tile = get_global_id(1);
+  const int first_row = get_global_id(0) * ROWS;
+  const float exists = tile < tile_count ? 1.0f : 0.0f;
+  __global const float* m = from_tile + 9 * min(tile, tile_count - 1);
+  const float3 step = (float3)(m[0], m[3], m[6]);
+  const int to_next_row = height > 1 ? stride : 0;
+  int offsets[BATCH];
+  float fraction_x[BATCH];
+  float fraction_y[BATCH];
+  float seen[BATCH];
+  ushort upper[BATCH];
+  ushort lower[BATCH];
+  for (int y = first_row; y < first_row + ROWS; ++y) {
+    __global float* out = samples + tile * SAMPLES + y * W;
+    const float3 origin = (float3)(m[1], m[4], m[7]) * (float)y + (float3)(m[2], m[5], m[8]);
+    Lanes value_sum = 0.0f;
+    Lanes seen_sum = 0.0f;
+    for (int x = 0; x < W; x += BATCH) {
+      LocateSamples(origin, step, x, width, height, stride, offsets, fraction_x, fraction_y, seen);
+      for (int i = 0; i < BATCH; ++i) {
+        upper[i] = as_ushort(vload2(0, picture + offsets[i]));
+        lower[i] = as_ushort(vload2(0, picture + offsets[i] + to_next_row));
+      }
+      for (int i = 0; i < BATCH; i += V) {
+        const IntLanes up = SHORTS_TO_INT(upper + i);
+        const IntLanes low = SHORTS_TO_INT(lower + i);
+        const Lanes a = TO_FLOAT(up & 0xff);
+        const Lanes c = TO_FLOAT(low & 0xff);
+        const Lanes above = a + LOAD(fraction_x + i) * (TO_FLOAT(up >> 8) - a);
+        const Lanes below = c + LOAD(fraction_x + i) * (TO_FLOAT(low >> 8) - c);
+        const Lanes value = above + LOAD(fraction_y + i) * (below - above);
+        const Lanes is_seen = exists * LOAD(seen + i);
+        const Lanes weight = is_seen * LOAD(window_x + x + i);
+        value_sum += weight * value;
+        seen_sum += weight;
+        STORE(select((Lanes)(UNSEEN), value, is_seen > 0.0f), out + x + i);
+      }
+    }
+    row_sums[2 * H * tile + y] = window_y[y] * SumOfLanes(value_sum);
+    row_sums[2 * H * tile + H + y] = window_y[y] * SumOfLanes(seen_sum);
+  }
+}

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Fourier transforms of tile pairs. A work-item transforms V neighbouring columns at a time, one a
+// lane, and writes the result transposed: two such steps make a two-dimensional transform in natural
+// order. The columns' transform decimates in frequency, in place: a block of values is split by radix
+// 8 or 4 until nothing is left to split.
+//
+// Tables for a side of n: twiddle[k] = exp(-2 pi i k / n), and order[k], where the value of
+// frequency k lies after the last split.
+
+// Forward transform of 4 values, natural order.
+void Transform4(Lanes* re, Lanes* im) {
+  const Lanes a_re = re[0] + re[2], a_im = im[0] + im[2];
+  const Lanes b_re = re[0] - re[2], b_im = im[0] - im[2];
+  const Lanes c_re = re[1] + re[3], c_im = im[1] + im[3];
+  const Lanes d_re = re[1] - re[3], d_im = im[1] - im[3];
+  re[0] = a_re + c_re, im[0] = a_im + c_im;
+  re[1] = b_re + d_im, im[1] = b_im - d_re;
+  re[2] = a_re - c_re, im[2] = a_im - c_im;
+  re[3] = b_re - d_im, im[3] = b_im + d_re;
+}
+
+// Forward transform of 8 values, natural order.
+void Transform8(Lanes* re, Lanes* im) {
+  Lanes even_re[4] = {re[0], re[2], re[4], re[6]}, even_im[4] = {im[0], im[2], im[4], im[6]};
+  Lanes odd_re[4] = {re[1], re[3], re[5], re[7]}, odd_im[4] = {im[1], im[3], im[5], im[7]};
+  Transform4(even_re, even_im);
+  Transform4(odd_re, odd_im);
+  // The odd half times exp(-2 pi i k / 8).
+  const float root = 0.70710678118654752f;
+  const Lanes turned_re[4] = {odd_re[0], root * (odd_re[1] + odd_im[1]), odd_im[2],
+                              root * (odd_im[3] - odd_re[3])};
+  const Lanes turned_im[4] = {odd_im[0], root * (odd_im[1] - odd_re[1]), -odd_re[2],
+                              -root * (odd_re[3] + odd_im[3])};
+#pragma unroll
+  for (int k = 0; k < 4; ++k) {
+    re[k] = even_re[k] + turned_re[k], im[k] = even_im[k] + turned_im[k];
+    re[k + 4] = even_re[k] - turned_re[k], im[k + 4] = even_im[k] - turned_im[k];
+  }
+}
+
+// Splits every block of `block` values into RADIX blocks, of which block m takes the frequencies
+// RADIX * q + m.
+#define DEFINE_SPLIT(RADIX)                                                                      \
+  void SplitBy##RADIX(Lanes* re, Lanes* im, __global const float2* twiddle, int side, int block) { \
+    const int step = block / RADIX;                                                              \
+    for (int j = 0; j < step; ++j) {                                                             \
+      float2 turn[RADIX];                                                                        \
+      for (int m = 1; m < RADIX; ++m) turn[m] = twiddle[m * j * (side / block)];                 \
+      for (int at = j; at < side; at += block) {                                                 \
+        Lanes r[RADIX], i[RADIX];                                                                \
+        _Pragma("unroll") for (int m = 0; m < RADIX; ++m) {                                      \
+          r[m] = re[at + m * step], i[m] = im[at + m * step];                                    \
+        }                                                                                        \
+        Transform##RADIX(r, i);                                                                  \
+        re[at] = r[0], im[at] = i[0];                                                            \
+        _Pragma("unroll") for (int m = 1; m < RADIX; ++m) {                                      \
+          re[at + m * step] = turn[m].x * r[m] - turn[m].y * i[m];                               \
+          im[at + m * step] = turn[m].x * i[m] + turn[m].y * r[m];                               \
+        }                                                                                        \
+      }                                                                                          \
+    }                                                                                            \
+  }
+DEFINE_SPLIT(4)
+DEFINE_SPLIT(8)
+
+// The last split, which needs no twiddles.
+#define DEFINE_FINISH(RADIX)                                             \
+  void FinishBy##RADIX(Lanes* re, Lanes* im, int side) {                 \
+    for (int at = 0; at < side; at += RADIX) Transform##RADIX(re + at, im + at); \
+  }
+DEFINE_FINISH(4)
+DEFINE_FINISH(8)
+
+// In place; frequency k comes to lie at order[k] (PhaseCorrelationOpenCl makes that table).
+void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle, int side) {
+  int block = side;
+  for (; block > 8; block /= block == 16 ? 4 : 8) {
+    if (block == 16) {
+      SplitBy4(re, im, twiddle, side, block);
+    } else {
+      SplitBy8(re, im, twiddle, side, block);
+    }
+  }
+  if (block == 8) {
+    FinishBy8(re, im, side);
+  } else {
+    FinishBy4(re, im, side);
+  }
+}
+
+// Writes V columns as V rows of `side` values. A block of V x V is transposed in registers: each
+// round interleaves vector i with vector i + V / 2, which turns the bits of (vector, lane) by one.
+void StoreTransposed(const Lanes* values, __global const int* order, int side,
+                     __global float* restrict out) {
+  for (int k = 0; k < side; k += V) {
+#if V == 1
+    out[k] = values[order[k]];
+#else
+    Lanes block[V], turned[V];
+#pragma unroll
+    for (int i = 0; i < V; ++i) block[i] = values[order[k + i]];
+#pragma unroll
+    for (int round = 1; round < V; round *= 2) {
+#pragma unroll
+      for (int i = 0; i < V / 2; ++i) {
+        turned[2 * i].even = block[i].lo, turned[2 * i].odd = block[i + V / 2].lo;
+        turned[2 * i + 1].even = block[i].hi, turned[2 * i + 1].odd = block[i + V / 2].hi;
+      }
+#pragma unroll
+      for (int i = 0; i < V; ++i) block[i] = turned[i];
+    }
+#pragma unroll
+    for (int i = 0; i < V; ++i) STORE(block[i], out + i * side + k);
+#endif
+  }
+}
+
+float SumOfRow(__global const float* row, int count) {
+  Lanes sum = 0.0f;
+  for (int i = 0; i < count; i += V) sum += LOAD(row + i);
+  return SumOfLanes(sum);
+}
+
+// First step of a picture's transform: takes the window-weighted mean off the samples, applies the
+// window, transforms columns. Global size: W / V, pairs. Also notes each tile's coverage.
+__kernel void TransformSamples(__global const float* restrict samples,
+                               __global const float* restrict row_sums,
+                               __global const float* restrict window_x,
+                               __global const float* restrict window_y, float window_sum,
+                               __global const float2* restrict twiddle,
+                               __global const int* restrict order, __global float* restrict coverage,
+                               __global float* restrict out) {
+  const int x = get_global_id(0) * V;
+  const int pair = get_global_id(1);
+  const Lanes weight_x = LOAD(window_x + x);
+  Lanes parts[2][H];
+  for (int part = 0; part < 2; ++part) {
+    const int tile = 2 * pair + part;
+    const float value_sum = SumOfRow(row_sums + 2 * H * tile, H);
+    const float seen_sum = SumOfRow(row_sums + 2 * H * tile + H, H);
+    const float mean = seen_sum > 0.0f ? value_sum / seen_sum : 0.0f;
+    if (x == 0) coverage[tile] = fmin(seen_sum / window_sum, 1.0f);
+    __global const float* column = samples + tile * SAMPLES + x;
+    for (int y = 0; y < H; ++y) {
+      const Lanes value = LOAD(column + y * W);
+      parts[part][y] = select((Lanes)(0.0f), weight_x * window_y[y] * (value - mean), value >= 0.0f);
+    }
+  }
+  TransformLanes(parts[0], parts[1], twiddle, H);
+  __global float* destination = out + 2 * SAMPLES * pair + x * H;
+  StoreTransposed(parts[0], order, H, destination);
+  StoreTransposed(parts[1], order, H, destination + SAMPLES);
+}
+
+// Second step of a transform or of an inverse one: `in` holds W rows of H values. Global size: H / V,
+// pairs.
+__kernel void TransformColumns(__global const float* restrict in,
+                               __global const float2* restrict twiddle,
+                               __global const int* restrict order, __global float* restrict out) {
+  const int x = get_global_id(0) * V;
+  const int pair = get_global_id(1);
+  __global const float* column = in + 2 * SAMPLES * pair + x;
+  Lanes re[W], im[W];
+  for (int y = 0; y < W; ++y) {
+    re[y] = LOAD(column + y * H);
+    im[y] = LOAD(column + SAMPLES + y * H);
+  }
+  TransformLanes(re, im, twiddle, W);
+  __global float* destination = out + 2 * SAMPLES * pair + x * W;
+  StoreTransposed(re, order, W, destination);
+  StoreTransposed(im, order, W, destination + SAMPLES);
+}
+
+typedef struct {
+  Lanes re;
+  Lanes im;
+} Complex;
+
+// Values at x to x + V - 1 of a spectrum's row.
+Complex LoadBins(__global const float* re, int x) {
+  return (Complex){LOAD(re + x), LOAD(re + SAMPLES + x)};
+}
+
+// Values at -x to -(x + V - 1) of a spectrum's row. Where x is 0 the first of them lies one past the
+// row, and is set right; spectra have a spare value at the end.
+Complex LoadMirroredBins(__global const float* re, int x) {
+  __global const float* start = re + W - x - (V - 1);
+  Complex bins = {Reversed(LOAD(start)), Reversed(LOAD(start + SAMPLES))};
+  if (x == 0) {
+#if V == 1
+    bins.re = re[0];
+    bins.im = re[SAMPLES];
+#else
+    bins.re.s0 = re[0];
+    bins.im.s0 = re[SAMPLES];
+#endif
+  }
+  return bins;
+}
+
+// Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak of
+// current(x + d) = reference(x) at d), weighted. `noise_power` damps what does not rise above it.
+Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight, float noise_power) {
+  const Lanes re = current.re * reference.re + current.im * reference.im;
+  const Lanes im = current.im * reference.re - current.re * reference.im;
+  const Lanes scale = weight / (sqrt(re * re + im * im) + noise_power);
+  return (Complex){scale * re, scale * im};
+}
+
+// First step of the inverse transform of the cross power of two pictures. Global size: W / V, pairs.
+//
+// With z the transform of a + i b, twice the transform of a is z(k) + conj(z(-k)), that of b is
+// (z(k) - conj(z(-k))) / i; the factors are made up for by four times the noise power. An inverse
+// transform is a forward one between swapped real and imaginary parts: of c_b + i c_a, where c_a
+// and c_b are the cross powers, so that the surfaces of a and b come out as real and imaginary part.
+__kernel void TransformCrossPower(__global const float* restrict reference,
+                                  __global const float* restrict current,
+                                  __global const float* restrict weight, float noise_power,
+                                  __global const float2* restrict twiddle,
+                                  __global const int* restrict order, __global float* restrict out) {
+  const int x = get_global_id(0) * V;
+  const int pair = get_global_id(1);
+  reference += 2 * SAMPLES * pair;
+  current += 2 * SAMPLES * pair;
+  Lanes re[H], im[H];
+  for (int y = 0; y < H; ++y) {
+    const int row = y * W;
+    const int mirrored_row = ((H - y) & (H - 1)) * W;
+    const Complex r = LoadBins(reference + row, x);
+    const Complex s = LoadMirroredBins(reference + mirrored_row, x);
+    const Complex c = LoadBins(current + row, x);
+    const Complex d = LoadMirroredBins(current + mirrored_row, x);
+    const Lanes w = LOAD(weight + row + x);
+    const Complex first =
+        NormalisedCrossPower((Complex){r.re + s.re, r.im - s.im},
+                             (Complex){c.re + d.re, c.im - d.im}, w, 4.0f * noise_power);
+    const Complex second =
+        NormalisedCrossPower((Complex){r.im + s.im, s.re - r.re},
+                             (Complex){c.im + d.im, d.re - c.re}, w, 4.0f * noise_power);
+    re[y] = second.im + first.re;
+    im[y] = second.re - first.im;
+  }
+  TransformLanes(re, im, twiddle, H);
+  __global float* destination = out + 2 * SAMPLES * pair + x * H;
+  StoreTransposed(re, order, H, destination);
+  StoreTransposed(im, order, H, destination + SAMPLES);
+}

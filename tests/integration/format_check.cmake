@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -D CLANG_FORMAT=<clang-format 14> -D ROOT=<folder> -P format_check.cmake
+# Fails, naming them, if C++ files under ROOT are not as .clang-format wants them.
+set(files)
+foreach(folder gpu-kernels service gst-plugins replay tests)
+  file(GLOB_RECURSE found ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cc)
+  list(APPEND files ${found})
+endforeach()
+if(NOT files)
+  message(FATAL_ERROR "No C++ file under ${ROOT}")
+endif()
+
+execute_process(COMMAND ${CLANG_FORMAT} --dry-run --Werror --style=file ${files}
+                RESULT_VARIABLE status ERROR_VARIABLE report)
+if(NOT status EQUAL 0)
+  string(REGEX MATCHALL "[^\n]+:[0-9]+:[0-9]+: error: [^\n]+" places "${report}")
+  set(bad)
+  foreach(place IN LISTS places)
+    string(REGEX REPLACE ":[0-9]+:[0-9]+: error: .*" "" file "${place}")
+    list(APPEND bad ${file})
+  endforeach()
+  list(REMOVE_DUPLICATES bad)
+  if(NOT bad)
+    message(FATAL_ERROR "${report}")
+  endif()
+  list(JOIN bad "\n  " bad)
+  message(FATAL_ERROR "clang-format -i these:\n  ${bad}")
+endif()
+list(LENGTH files count)
+message(STATUS "${count} files are formatted")

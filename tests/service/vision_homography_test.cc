@@ -9,6 +9,7 @@
 
 #include "service/vision/homography.h"
 #include "service/vision/homography_mle.h"
+#include "tests/support/synthetic_ground.h"
 
 namespace windhover {
 namespace {
@@ -16,18 +17,8 @@ namespace {
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
-// A turn by `radians` about the picture's centre, a zoom, a shift and some perspective.
-Eigen::Matrix3d CameraMotion(double radians, double zoom, double dx, double dy,
-                             double perspective) {
-  Eigen::Matrix3d to_centre = Eigen::Matrix3d::Identity();
-  to_centre.topRightCorner<2, 1>() << -0.5 * (kWidth - 1), -0.5 * (kHeight - 1);
-  Eigen::Matrix3d motion = Eigen::Matrix3d::Identity();
-  motion.topLeftCorner<2, 2>() << zoom * std::cos(radians), -zoom * std::sin(radians),
-      zoom * std::sin(radians), zoom * std::cos(radians);
-  motion.topRightCorner<2, 1>() << dx, dy;
-  motion.bottomLeftCorner<1, 2>() << perspective, -0.5 * perspective;
-  const Eigen::Matrix3d m = to_centre.inverse() * motion * to_centre;
-  return m / m(2, 2);
+Eigen::Matrix3d Motion(double radians, double zoom, double dx, double dy, double perspective) {
+  return CameraMotion(kWidth, kHeight, radians, zoom, dx, dy, perspective);
 }
 
 std::vector<PointMatch> TileMatches(const Eigen::Matrix3d& reference_from_frame) {
@@ -44,16 +35,8 @@ std::vector<PointMatch> TileMatches(const Eigen::Matrix3d& reference_from_frame)
   return matches;
 }
 
-// Root mean square distance over the picture between two homographies, px.
 double Rms(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  double sum = 0.0;
-  int count = 0;
-  for (int y = 0; y < kHeight; y += 16) {
-    for (int x = 0; x < kWidth; x += 16, ++count) {
-      sum += (Project(a, {x, y}) - Project(b, {x, y})).squaredNorm();
-    }
-  }
-  return std::sqrt(sum / count);
+  return HomographyRms(a, b, kWidth, kHeight);
 }
 
 class Noise {
@@ -66,10 +49,9 @@ class Noise {
   std::normal_distribution<double> normal_;
 };
 
-const Eigen::Matrix3d kMotions[] = {Eigen::Matrix3d::Identity(), CameraMotion(0, 1, 12.5, -40, 0),
-                                    CameraMotion(0.2, 1.1, -25, 7, 0),
-                                    CameraMotion(-0.05, 0.97, 3, 3, 1e-4),
-                                    CameraMotion(1.0, 0.8, 100, -80, 3e-4)};
+const Eigen::Matrix3d kMotions[] = {Eigen::Matrix3d::Identity(), Motion(0, 1, 12.5, -40, 0),
+                                    Motion(0.2, 1.1, -25, 7, 0), Motion(-0.05, 0.97, 3, 3, 1e-4),
+                                    Motion(1.0, 0.8, 100, -80, 3e-4)};
 
 TEST(HomographyDlt, Nominal) {
   for (const Eigen::Matrix3d& truth : kMotions) {
@@ -234,8 +216,8 @@ TEST(Overlap, CountsTheSharedPicture) {
     return OverlapShare(m, kWidth, kHeight, kWidth, kHeight);
   };
   EXPECT_DOUBLE_EQ(share(Eigen::Matrix3d::Identity()), 1.0);
-  EXPECT_NEAR(share(CameraMotion(0, 1, 320, 0, 0)), 0.5, 0.03);
-  EXPECT_DOUBLE_EQ(share(CameraMotion(0, 1, 0, 500, 0)), 0.0);
+  EXPECT_NEAR(share(Motion(0, 1, 320, 0, 0)), 0.5, 0.03);
+  EXPECT_DOUBLE_EQ(share(Motion(0, 1, 0, 500, 0)), 0.0);
 }
 
 }  // namespace

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "service/vision/homography.h"
+#include "service/vision/registration.h"
+#include "service/vision/tile_layout.h"
+#include "service/vision/tile_registration.h"
+#include "tests/support/synthetic_ground.h"
+
+namespace windhover {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 241;
+
+class StreamRegistrationTest : public testing::TestWithParam<ReferenceMode> {
+ protected:
+  StreamRegistrationTest() : frame_(backend_->MakeImage<std::uint8_t>(kWidth, kHeight)) {
+    options_.reference = GetParam();
+  }
+
+  std::unique_ptr<StreamRegistration> Make() {
+    return std::make_unique<StreamRegistration>(backend_, kWidth, kHeight, options_);
+  }
+  const GrayImage& Frame(const Eigen::Matrix3d& ground_from_frame, double noise_sigma = 2.0) {
+    ground_.Render(ground_from_frame, noise_sigma, ++noise_seed_, frame_);
+    return frame_;
+  }
+  const GrayImage& Constant(std::uint8_t value) {
+    const auto view = frame_.Write();
+    for (int y = 0; y < kHeight; ++y) std::fill_n(view.row(y), kWidth, value);
+    return frame_;
+  }
+
+  std::shared_ptr<Backend> backend_ = Backend::Create("cpu");
+  RegistrationOptions options_;
+  SyntheticGround ground_;
+  GrayImage frame_;
+  std::uint32_t noise_seed_ = 0;
+};
+
+Eigen::Matrix3d Flight(int t, double shift_px, double radians) {
+  return CameraMotion(kWidth, kHeight, radians * t, 1.0 + 0.001 * t, shift_px * t,
+                      -0.6 * shift_px * t, 1e-6 * t);
+}
+
+TEST_P(StreamRegistrationTest, Nominal) {
+  const auto registration = Make();
+  Eigen::Matrix3d before;
+  for (int t = 0; t < 30; ++t) {
+    const Eigen::Matrix3d ground_from_frame = Flight(t, 4.0, 0.006);
+    const FrameRegistration r = registration->Register(Frame(ground_from_frame));
+    EXPECT_EQ(r.frame_number, t);
+    EXPECT_EQ(r.starts_segment, t == 0);
+    ASSERT_EQ(r.quality, RegistrationQuality::kValid) << t;
+    EXPECT_EQ(r.anchor_from_frame.has_value(), GetParam() == ReferenceMode::kAnchor);
+    if (t > 0) {
+      const Eigen::Matrix3d truth = before.inverse() * ground_from_frame;
+      EXPECT_LT(HomographyRms(r.previous_from_frame, truth, kWidth, kHeight), 0.1) << t;
+      EXPECT_GE(r.inliers, 24);
+      EXPECT_EQ(r.tiles, 36);
+      EXPECT_TRUE(r.corner_covariance.allFinite());
+      EXPECT_GT(r.corner_covariance.trace(), 0.0);
+    }
+    before = ground_from_frame;
+  }
+}
+
+TEST_P(StreamRegistrationTest, NoiseStability) {
+  for (const double sigma : {5.0, 10.0}) {
+    const auto registration = Make();
+    for (int t = 0; t < 5; ++t) {
+      const FrameRegistration r = registration->Register(Frame(Flight(t, 3.0, 0.002), sigma));
+      ASSERT_NE(r.quality, RegistrationQuality::kLost);
+      if (t == 0) continue;
+      const Eigen::Matrix3d truth = Flight(t - 1, 3.0, 0.002).inverse() * Flight(t, 3.0, 0.002);
+      EXPECT_LT(HomographyRms(r.previous_from_frame, truth, kWidth, kHeight), 0.03 * sigma);
+    }
+  }
+}
+
+TEST_P(StreamRegistrationTest, LargeJumpsAreFound) {
+  // A third of the picture at once, with no motion before that would foretell it.
+  const auto registration = Make();
+  registration->Register(Frame(Eigen::Matrix3d::Identity()));
+  const Eigen::Matrix3d jump = CameraMotion(kWidth, kHeight, 0.02, 1.0, 100, 40);
+  const FrameRegistration r = registration->Register(Frame(jump));
+  ASSERT_NE(r.quality, RegistrationQuality::kLost);
+  EXPECT_LT(HomographyRms(r.previous_from_frame, jump, kWidth, kHeight), 0.2);
+}
+
+TEST_P(StreamRegistrationTest, IdentityInIdentityOut) {
+  const auto registration = Make();
+  registration->Register(Frame(Eigen::Matrix3d::Identity(), 0.0));
+  const FrameRegistration r = registration->Register(Frame(Eigen::Matrix3d::Identity(), 0.0));
+  EXPECT_LT(HomographyRms(r.previous_from_frame, Eigen::Matrix3d::Identity(), kWidth, kHeight),
+            1e-3);
+}
+
+TEST_P(StreamRegistrationTest, NoTextureIsLost) {
+  for (const std::uint8_t value : {0, 128, 255}) {
+    const auto registration = Make();
+    for (int t = 0; t < 3; ++t) {
+      const FrameRegistration r = registration->Register(Constant(value));
+      EXPECT_EQ(r.quality, RegistrationQuality::kLost);
+      EXPECT_TRUE(r.starts_segment);
+      EXPECT_TRUE(r.previous_from_frame.isIdentity());
+      EXPECT_TRUE(r.corner_covariance.isZero());
+    }
+  }
+}
+
+TEST_P(StreamRegistrationTest, ACutStartsANewSegment) {
+  const auto registration = Make();
+  registration->Register(Frame(Flight(0, 2, 0)));
+  registration->Register(Frame(Flight(1, 2, 0)));
+  Eigen::Matrix3d elsewhere = Eigen::Matrix3d::Identity();
+  elsewhere.topRightCorner<2, 1>() << 4000, 7000;
+  const FrameRegistration cut = registration->Register(Frame(elsewhere));
+  EXPECT_EQ(cut.quality, RegistrationQuality::kLost);
+  EXPECT_TRUE(cut.starts_segment);
+  EXPECT_EQ(cut.frame_number, 2);
+  const FrameRegistration after = registration->Register(Frame(elsewhere * Flight(1, 2, 0)));
+  EXPECT_EQ(after.quality, RegistrationQuality::kValid);
+  EXPECT_FALSE(after.starts_segment);
+  EXPECT_LT(HomographyRms(after.previous_from_frame, Flight(1, 2, 0), kWidth, kHeight), 0.1);
+}
+
+TEST_P(StreamRegistrationTest, ResetForgetsButCountsOn) {
+  const auto registration = Make();
+  registration->Register(Frame(Flight(0, 2, 0)));
+  registration->Reset();
+  const FrameRegistration r = registration->Register(Frame(Flight(50, 2, 0)));
+  EXPECT_TRUE(r.starts_segment);
+  EXPECT_EQ(r.quality, RegistrationQuality::kValid);
+  EXPECT_EQ(r.frame_number, 1);
+}
+
+TEST_P(StreamRegistrationTest, WrongSizesAreRefused) {
+  const auto registration = Make();
+  const GrayImage other = backend_->MakeImage<std::uint8_t>(kWidth + 1, kHeight);
+  EXPECT_THROW(registration->Register(other), std::invalid_argument);
+  try {
+    StreamRegistration(backend_, 100, 200, options_);
+    FAIL() << "no error";
+  } catch (const OptionError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("100x200"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("at least 114x114"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, StreamRegistrationTest,
+                         testing::Values(ReferenceMode::kAnchor, ReferenceMode::kCentre),
+                         [](const auto& info) {
+                           return info.param == ReferenceMode::kAnchor ? "Anchor" : "Centre";
+                         });
+
+TEST(StreamRegistrationAnchor, MovesOnWhenOverlapShrinks) {
+  const auto backend = Backend::Create("cpu");
+  StreamRegistration registration(backend, kWidth, kHeight, {});
+  GrayImage frame = backend->MakeImage<std::uint8_t>(kWidth, kHeight);
+  const SyntheticGround ground;
+  std::uint64_t anchor = 0;
+  int moves = 0;
+  Eigen::Matrix3d ground_from_anchor = Flight(0, 8.0, 0.0);
+  for (int t = 0; t < 25; ++t) {
+    ground.Render(Flight(t, 8.0, 0.0), 1.0, t, frame);
+    const FrameRegistration r = registration.Register(frame);
+    ASSERT_EQ(r.quality, RegistrationQuality::kValid) << t;
+    if (r.anchor_number != anchor) {
+      EXPECT_EQ(r.anchor_number, t - 1);
+      ground_from_anchor = Flight(t - 1, 8.0, 0.0);
+      anchor = r.anchor_number;
+      ++moves;
+    }
+    EXPECT_GT(r.overlap, 0.7);
+    const Eigen::Matrix3d truth = ground_from_anchor.inverse() * Flight(t, 8.0, 0.0);
+    EXPECT_LT(HomographyRms(*r.anchor_from_frame, truth, kWidth, kHeight), 0.1) << t;
+  }
+  EXPECT_GE(moves, 3);
+}
+
+TEST(TileLayoutTest, CoversThePictureWithOverlap) {
+  const TileLayout layout = UniformTileLayout(640, 480, 6, 6);
+  EXPECT_EQ(layout.tile_width, 128);
+  EXPECT_EQ(layout.tile_height, 128);
+  ASSERT_EQ(layout.tiles.size(), 36);
+  EXPECT_EQ(layout.tiles.front().x, 0);
+  EXPECT_EQ(layout.tiles.back().x + layout.tile_width, 640);
+  EXPECT_EQ(layout.tiles.back().y + layout.tile_height, 480);
+  const TileLayout large = UniformTileLayout(1920, 1080, 6, 6);
+  EXPECT_EQ(large.tile_width, 512);
+  EXPECT_EQ(large.tile_height, 256);
+}
+
+}  // namespace
+}  // namespace windhover

@@ -52,7 +52,8 @@ struct ListenerDeleter {
 };
 using Listener = std::unique_ptr<dds_listener_t, ListenerDeleter>;
 
-// Reliability and history of a writer or reader. `history_depth` 0 keeps all.
-Qos MakeQos(bool reliable, int max_blocking_ms, int history_depth, const std::string& partition);
+// Reliability, history and partitions of a writer or reader. `history_depth` 0 keeps all;
+// `partitions` are separated by commas, and an empty name is the default partition.
+Qos MakeQos(bool reliable, int max_blocking_ms, int history_depth, const std::string& partitions);
 
 }  // namespace windhover

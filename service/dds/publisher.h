@@ -19,12 +19,7 @@ namespace windhover {
 // waiting  A write waits up to PublishOptions::max_blocking_ms for room where reliable subscribers
 //          lag behind, and not at all otherwise: a stalled subscriber slows a video down to two
 //          such waits a frame until its lease ends (10 s after its process stopped answering).
-// element  whpublish makes its publisher when it goes from NULL to READY, so that subscribers can
-// be
-//          waited for before frames flow, and shows `subscribers` (with notify) and the counters
-//          `homographies`, `detections`, `boxes`, `failed`, `omitted` as read-only properties.
-// memory   Samples are written from buffers that are made once; nothing is allocated per sample
-// here.
+// memory   Samples are written from buffers made once; nothing is allocated per sample here.
 class Publisher {
  public:
   // Samples since construction.

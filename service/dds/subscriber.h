@@ -15,7 +15,7 @@ enum class Topic { kHomography, kDetections };
 
 struct SubscribeOptions {
   int domain = 0;         // 0 to 230
-  std::string partition;  // empty is the default partition
+  std::string partition;  // DDS partitions as in PublishOptions
   std::string stream;     // only samples of this stream; empty takes all streams
   bool homographies = true;
   bool detections = true;

@@ -265,6 +265,13 @@ TEST_F(DdsTest, OtherPartitionsAreNotSeen) {
   EXPECT_EQ(detections_[0].frame_number, 1);
 }
 
+TEST_F(DdsTest, OneOfSeveralPartitionsIsEnough) {
+  publish_.partition = "," + partition_ + "-other," + partition_;
+  Connect();
+  ASSERT_TRUE(publisher_->Publish(1, 8, 8, 0, {}));
+  ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return !detections_.empty(); }));
+}
+
 TEST(PublisherTest, PublishesWithoutSubscribers) {
   PublishOptions options;
   options.partition = OwnPartition("without-subscribers");

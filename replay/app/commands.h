@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace windhover::replay {
+
+// Each adds one subcommand to windhover-replay. What it does runs in the subcommand's final
+// callback; an error is an exception with a text for people.
+void AddRenderCommand(CLI::App& app);
+
+}  // namespace windhover::replay

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "replay/app/commands.h"
+#include "replay/app/interrupt.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Flights with exact truth, scores and benchmarks for Windhover", "windhover-replay");
+  app.set_version_flag("--version", "windhover-replay " WINDHOVER_VERSION);
+  app.require_subcommand(1);
+  windhover::replay::AddRenderCommand(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  } catch (const windhover::replay::Interrupted&) {
+    std::fputs("\nwindhover-replay: interrupted; nothing half-written is left\n", stderr);
+    return 130;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "windhover-replay: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/app/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace windhover::replay {
+
+Progress::Progress(std::string label, int total)
+    : label_(std::move(label)),
+      total_(total),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {}
+
+void Progress::Advance() {
+  const std::scoped_lock lock(mutex_);
+  ++done_;
+  const auto now = std::chrono::steady_clock::now();
+  const bool tenth = done_ * 10 / total_ != (done_ - 1) * 10 / total_;
+  const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : tenth;
+  if (!due && done_ != total_) return;
+  shown_ = now;
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  std::fprintf(stderr, "%s%s %d/%d (%.1f a second)%s", terminal_ ? "\r" : "", label_.c_str(), done_,
+               total_, seconds > 0 ? done_ / seconds : 0.0, terminal_ ? "\x1b[K" : "\n");
+}
+
+void Progress::Finish() {
+  if (terminal_) std::fputc('\n', stderr);
+}
+
+}  // namespace windhover::replay

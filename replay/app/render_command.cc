@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "replay/app/commands.h"
+#include "replay/app/interrupt.h"
+#include "replay/app/progress.h"
+#include "replay/format/format_error.h"
+#include "replay/format/homographies.h"
+#include "replay/format/labels.h"
+#include "replay/format/pending_folder.h"
+#include "replay/format/sequence.h"
+#include "replay/render/parallel.h"
+#include "replay/render/renderer.h"
+
+namespace windhover::replay {
+namespace {
+
+struct RenderSettings {
+  std::string sequence = "flight";
+  std::filesystem::path out;
+  int frames = 0;
+  std::string size;
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
+void ParseSize(const std::string& text, FlightPlan& plan) {
+  int width = 0;
+  int height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 ||
+      height < 16 || width > 8192 || height > 8192) {
+    throw std::invalid_argument("--size must be WIDTHxHEIGHT, 16 to 8192 px each, not '" + text +
+                                "'");
+  }
+  plan.width = width;
+  plan.height = height;
+}
+
+void WriteTruth(const std::filesystem::path& folder, const std::vector<FrameTruth>& truth) {
+  std::vector<LabelledBox> movers;
+  std::vector<LabelledBox> decoys;
+  std::vector<Eigen::Matrix3d> homographies;
+  for (const FrameTruth& frame : truth) {
+    movers.insert(movers.end(), frame.movers.begin(), frame.movers.end());
+    decoys.insert(decoys.end(), frame.decoys.begin(), frame.decoys.end());
+    homographies.push_back(frame.first_from_frame);
+  }
+  WriteTruthBoxes(MoversPath(folder), movers);
+  WriteTruthBoxes(DecoysPath(folder), decoys);
+  WriteHomographies(HomographiesPath(folder), homographies);
+}
+
+void Render(const RenderSettings& settings) {
+  FlightPlan plan = FindFlightPlan(settings.sequence);
+  if (settings.frames > 0) plan.frames = settings.frames;
+  if (settings.seed > 0) plan.seed = settings.seed;
+  if (!settings.size.empty()) ParseSize(settings.size, plan);
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = settings.threads > 0 ? settings.threads : cores;
+
+  const std::filesystem::path final_path = settings.out / plan.number;
+  PendingFolder folder(final_path);
+  const SequenceInfo info = {.name = plan.number + "-" + plan.name,
+                             .frame_rate_hz = plan.frame_rate_hz,
+                             .frames = plan.frames,
+                             .width = plan.width,
+                             .height = plan.height};
+  std::filesystem::create_directories(folder.path() / info.image_folder);
+  CatchInterrupts();
+  std::fprintf(stderr, "painting the ground of %s\n", info.name.c_str());
+  const Renderer renderer(plan, threads);
+  std::vector<FrameTruth> truth(plan.frames);
+  Progress progress("rendering", plan.frames);
+  ForEachInParallel(plan.frames, threads, [&](int frame) {
+    ThrowIfInterrupted();
+    const std::filesystem::path file = FramePath(folder.path(), info, frame + 1);
+    if (!cv::imwrite(file.string(), renderer.Frame(frame), {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+      throw FormatError(file, "cannot be written");
+    }
+    truth[frame] = renderer.Truth(frame);
+    progress.Advance();
+  });
+  progress.Finish();
+  WriteTruth(folder.path(), truth);
+  WriteSequenceInfo(folder.path(), info);
+  folder.Commit();
+  std::printf("%s\n", final_path.string().c_str());
+}
+
+}  // namespace
+
+void AddRenderCommand(CLI::App& app) {
+  auto settings = std::make_shared<RenderSettings>();
+  CLI::App* command = app.add_subcommand(
+      "render", "Render a flight with exact truth into OUT/<number>, and print that path");
+  command
+      ->add_option("--sequence", settings->sequence,
+                   "Number or name of the flight; 'flight' is the first one")
+      ->capture_default_str();
+  command->add_option("--out", settings->out, "Folder of the dataset")->required();
+  command->add_option("--frames", settings->frames, "Frames; default: as the flight has")
+      ->check(CLI::Range(1, 100000));
+  command->add_option(
+      "--size", settings->size,
+      "WIDTHxHEIGHT in px, with the same field of view; default: as the flight has");
+  command->add_option("--seed", settings->seed, "Another world and traffic; default: the flight's")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
+  command
+      ->add_option("--threads", settings->threads,
+                   "Threads; default: one a core. The files are the same")
+      ->check(CLI::Range(1, 1024));
+  command->final_callback([settings] { Render(*settings); });
+}
+
+}  // namespace windhover::replay

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/format/text_lines.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include "replay/format/format_error.h"
+
+namespace windhover::replay {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+}  // namespace
+
+void ForEachLine(const std::filesystem::path& file,
+                 const std::function<void(std::size_t, std::string_view)>& visit) {
+  std::ifstream in(file);
+  if (!in || std::filesystem::is_directory(file)) throw FormatError(file, "cannot be read");
+  std::string line;
+  for (std::size_t number = 1; std::getline(in, line); ++number) {
+    if (!Trimmed(line).empty()) visit(number, Trimmed(line));
+  }
+  if (in.bad()) throw FormatError(file, "reading failed");
+}
+
+std::string_view Trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::vector<std::string_view> Split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  const bool blanks = separator == ' ';
+  while (true) {
+    const std::size_t end = blanks ? text.find_first_of(kBlanks) : text.find(separator);
+    const std::string_view part = Trimmed(text.substr(0, end));
+    if (!blanks || !part.empty()) parts.push_back(part);
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::optional<double> ParseNumber(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+void WriteText(const std::filesystem::path& file, const std::string& text) {
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  const std::filesystem::path pending = file.string() + ".pending";
+  std::ofstream out(pending, std::ios::binary);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(pending, file, error);
+  if (!out || error) {
+    std::error_code ignored;
+    std::filesystem::remove(pending, ignored);
+    throw FormatError(file, "cannot be written");
+  }
+}
+
+std::string NumberText(double value, int digits) {
+  std::array<char, 64> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
+                                          std::chars_format::general, digits);
+  return {text.data(), error == std::errc() ? end : text.data()};
+}
+
+}  // namespace windhover::replay

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "replay/format/labels.h"
+#include "replay/render/camera.h"
+#include "replay/render/flight_plan.h"
+#include "replay/render/scene.h"
+#include "replay/render/sensor.h"
+#include "replay/render/terrain.h"
+#include "replay/render/traffic.h"
+#include "replay/render/view.h"
+
+namespace windhover::replay {
+
+// What is true about one rendered frame.
+struct FrameTruth {
+  // Ground at height 0: pixels of the frame to pixels of frame 0, at the middle of the exposures.
+  Eigen::Matrix3d first_from_frame = Eigen::Matrix3d::Identity();
+  // Vehicles that move, by kMoverTravelPx below; at least kLeastVisible of them seen and the box at
+  // least kLeastWidthPx wide and high. The box is the tightest around the pixels that are seen.
+  std::vector<LabelledBox> movers;
+  // Vehicles that do not, parked or waiting, by the same rules. Their ids never meet those of
+  // movers unless it is the same vehicle.
+  std::vector<LabelledBox> decoys;
+};
+
+// A vehicle moves in a frame where the way it makes over the ground in the kMoverWindowFrames
+// around that frame is at least kMoverTravelPx nominal ground pixels.
+inline constexpr int kMoverWindowFrames = 10;
+inline constexpr double kMoverTravelPx = 2.0;
+inline constexpr double kLeastVisible = 0.4;
+inline constexpr int kLeastWidthPx = 3;
+
+// Renders the frames of one flight. The picture and the truth of a frame follow from the plan
+// alone, to the bit, whatever is asked for in whatever order and on however many threads.
+class Renderer {
+ public:
+  // Paints the terrain on `threads` threads; takes some seconds. The plan must make sense:
+  // std::invalid_argument for sizes under 16 px and no frames.
+  Renderer(const FlightPlan& plan, int threads);
+
+  const FlightPlan& plan() const { return plan_; }
+  // Thread-safe. `frame` from 0 to plan().frames - 1; CV_8UC3, blue first.
+  cv::Mat Frame(int frame) const;
+  FrameTruth Truth(int frame) const;
+
+  // Share of the pixels of `frame` whose picture `gap` frames later is more than `px` away from
+  // where the ground's homography puts them, vehicles that move left out. For guarding the
+  // difficulty.
+  double OffPlaneShare(int frame, int gap, double px) const;
+
+ private:
+  std::vector<DrawnVehicle> VehiclesAt(double time) const;
+  bool Moves(const Traffic::Vehicle& vehicle, int frame) const;
+
+  FlightPlan plan_;
+  Scene scene_;
+  CameraPath camera_path_;
+  Traffic traffic_;
+  std::unique_ptr<const Terrain> terrain_;
+  std::vector<float> parked_sun_;
+  Sensor sensor_;
+};
+
+}  // namespace windhover::replay

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/render/scene.h"
+
+#include "replay/render/portable_math.h"
+
+namespace windhover::replay {
+namespace {
+
+Colour RandomPaint(Random& random) {
+  struct Choice {
+    double share;
+    Colour colour;
+  };
+  // Shares as on the roads of Europe; "asphalt" is the hard one.
+  static constexpr std::array<Choice, 9> kChoices = {{{0.20, {226, 226, 224}},  // white
+                                                      {0.15, {172, 172, 170}},  // silver
+                                                      {0.20, {106, 104, 103}},  // asphalt grey
+                                                      {0.15, {38, 36, 36}},     // black
+                                                      {0.08, {62, 58, 54}},     // anthracite
+                                                      {0.08, {52, 48, 150}},    // red
+                                                      {0.08, {128, 82, 48}},    // blue
+                                                      {0.03, {70, 190, 214}},   // yellow
+                                                      {0.03, {70, 92, 60}}}};   // green
+  double pick = random.Uniform();
+  Colour colour = kChoices.back().colour;
+  for (const Choice& choice : kChoices) {
+    colour = choice.colour;
+    pick -= choice.share;
+    if (pick < 0) break;
+  }
+  const auto shift = static_cast<float>(random.Uniform(-8, 8));
+  for (float& channel : colour) channel += shift;
+  return colour;
+}
+
+}  // namespace
+
+VehicleLook RandomVehicle(Random& random) {
+  VehicleLook look;
+  look.paint = RandomPaint(random);
+  const double kind = random.Uniform();
+  if (kind < 0.84) {
+    const double size = random.Uniform(0.92, 1.08);
+    return {VehicleKind::kCar, look.paint, 4.4 * size, 1.85 * (0.5 + 0.5 * size),
+            random.Uniform(1.4, 1.6)};
+  }
+  if (kind < 0.96) return {VehicleKind::kVan, look.paint, random.Uniform(4.9, 5.9), 2.05, 2.2};
+  return {VehicleKind::kTruck, look.paint, random.Uniform(7.5, 9.5), 2.45, 3.1};
+}
+
+Scene BuildScene(const FlightPlan& plan) {
+  switch (plan.scene) {
+    case SceneKind::kOutskirts:
+      return BuildOutskirts(plan);
+  }
+  return {};
+}
+
+}  // namespace windhover::replay

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "replay/render/scene.h"
+
+namespace windhover::replay {
+
+// The part of a scene that stands still, as a raster: what colour each spot has in its light, and
+// how high it is. Texel (i, j) has its centre at origin + texel_m * (i, j).
+class Terrain {
+ public:
+  // Heights in cm; the lowest bit is set where the spot is foliage.
+  using Height = std::uint16_t;
+  static constexpr Height kFoliage = 1;
+  static constexpr float HeightMetres(Height height) {
+    return static_cast<float>(height & ~kFoliage) * 0.01F;
+  }
+
+  // Side of the blocks of highest_near(), texels.
+  static constexpr int kBlock = 16;
+
+  Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+          double texel_m, int threads);
+
+  double texel_m() const { return texel_m_; }
+  const Eigen::Vector2d& origin() const { return origin_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // Blue, green, red and the share of the sun that reaches the spot, from the lowest byte on.
+  const std::uint32_t* colours() const { return colours_.data(); }
+  const Height* heights() const { return heights_.data(); }
+  // The greatest height, m, in and around the block that holds the texel: no ray that meets the
+  // ground there under up to 45 degrees can have met anything higher.
+  float highest_near(int x, int y) const {
+    return highest_near_[static_cast<std::size_t>(y / kBlock) * blocks_x_ + x / kBlock];
+  }
+  // Share of the sun at a spot of the map, 0 to 1; 1 outside.
+  float SunAt(const Eigen::Vector2d& spot) const;
+
+ private:
+  void Paint(const Scene& scene, int threads);
+  void FindHighest();
+  void Light(const Scene& scene, int threads);
+
+  Eigen::Vector2d origin_;
+  double texel_m_;
+  int width_;
+  int height_;
+  int blocks_x_ = 0;
+  int blocks_y_ = 0;
+  std::vector<std::uint32_t> colours_;
+  std::vector<Height> heights_;
+  std::vector<float> highest_;       // a block
+  std::vector<float> highest_near_;  // a block and its neighbours
+};
+
+}  // namespace windhover::replay

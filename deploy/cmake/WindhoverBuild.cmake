@@ -33,6 +33,7 @@ function(windhover_library name)
   add_library(windhover_${name} STATIC ${ARG_SOURCES})
   add_library(windhover::${name} ALIAS windhover_${name})
   set_target_properties(windhover_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(windhover_${name} PUBLIC cxx_std_20)
   target_include_directories(windhover_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/windhover>)

@@ -111,10 +111,10 @@ def check(root):
     return count, faults
 
 
-def main():
+def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("root", type=pathlib.Path, help="the repository's root")
-    count, faults = check(parser.parse_args().root)
+    count, faults = check(parser.parse_args(arguments).root)
     for fault in faults:
         print(fault)
     print(f"{count} includes read, {len(faults)} break a rule")
@@ -124,4 +124,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gst-plugins/background_element.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "gst-plugins/debug.h"
+#include "gst-plugins/evidence_meta.h"
+#include "gst-plugins/homography_meta.h"
+#include "gst-plugins/luma.h"
+#include "gst-plugins/video_frame_map.h"
+
+namespace windhover {
+
+const ElementText BackgroundElement::kText = {
+    "whbackground", "GstWindhoverBackground", "Aerial video background subtraction",
+    "Filter/Analyzer/Video",
+    "Lays the frames of a sliding window over each other as whregister measured them, takes the "
+    "pixel-wise median as background and marks what differs from it, for whmotion. Holds back "
+    "'lookahead' frames and says so in its latency; pictures pass unchanged. The registration "
+    "properties count only where whregister runs with reference=centre"};
+
+void BackgroundElement::InstallProperties(GObjectClass* klass) {
+  // Each frame says in which mode it was registered.
+  OptionProperties<BackgroundOptions, DeviceOptions, RegistrationOptions>::Install(
+      klass, GST_PARAM_MUTABLE_READY, {"reference"});
+}
+
+void BackgroundElement::Start() {
+  options_ = Options<BackgroundOptions>();
+  registration_options_ = Options<RegistrationOptions>();
+  registration_options_.reference = ReferenceMode::kCentre;
+  backend_ = shared_.Acquire(Options<DeviceOptions>().device);
+}
+
+void BackgroundElement::Stop() {
+  held_.Clear(source_pad());
+  background_.reset();
+  gray_ = {};
+  backend_.reset();
+  measured_.reset();
+  latency_ = 0;
+  held_buffers_ = 0;
+}
+
+void BackgroundElement::Configure(const GstVideoInfo& info) {
+  info_ = info;
+  const int width = GST_VIDEO_INFO_WIDTH(&info);
+  const int height = GST_VIDEO_INFO_HEIGHT(&info);
+  if (background_ == nullptr || gray_.width() != width || gray_.height() != height) {
+    background_.reset();
+    background_ = std::make_unique<BackgroundSubtraction>(backend_, width, height, options_,
+                                                          registration_options_);
+    gray_ = backend_->MakeImage<std::uint8_t>(width, height);
+  }
+  const int lookahead = background_->lookahead();
+  held_buffers_ = lookahead;
+  measured_.reset();
+  if (GST_VIDEO_INFO_FPS_N(&info) > 0) {
+    SetLatency(gst_util_uint64_scale(lookahead * GST_SECOND, GST_VIDEO_INFO_FPS_D(&info),
+                                     GST_VIDEO_INFO_FPS_N(&info)));
+  } else if (lookahead > 0) {
+    measured_.emplace(lookahead);
+    SetLatency(0);
+  }
+}
+
+GstFlowReturn BackgroundElement::Process(BufferPtr buffer) {
+  const auto* meta = gst_buffer_get_windhover_homography_meta(buffer.get());
+  if (meta == nullptr || meta->width != gray_.width() || meta->height != gray_.height()) {
+    throw std::runtime_error("whbackground needs whregister before it, at the same frame size");
+  }
+  {
+    const VideoFrameMap map(info_, buffer.get(), GST_MAP_READ);
+    ExtractLuma(map.frame(), gray_);
+  }
+  background_->Push(gray_, meta->registration);
+  if (measured_ && measured_->FrameIn(GST_BUFFER_PTS(buffer.get()))) {
+    SetLatency(measured_->delay());
+  }
+  held_.AddFrame(std::move(buffer));
+  return SendComplete();
+}
+
+GstFlowReturn BackgroundElement::SendComplete() {
+  GstFlowReturn result = GST_FLOW_OK;
+  while (std::shared_ptr<const MotionEvidence> evidence = background_->Pop()) {
+    BufferPtr buffer = held_.TakeFrame();
+    if (buffer == nullptr) throw std::logic_error("evidence for a frame that is not held");
+    if (measured_ && measured_->FrameOut(GST_BUFFER_PTS(buffer.get()))) {
+      SetLatency(measured_->delay());
+    }
+    buffer = MakeWritable(std::move(buffer));
+    AddEvidence(buffer.get(), std::move(evidence));
+    const GstFlowReturn pushed = Push(std::move(buffer));
+    if (result == GST_FLOW_OK) result = pushed;
+    while (GstEvent* event = held_.TakeEvent()) PushEvent(event);
+  }
+  return result;
+}
+
+bool BackgroundElement::Forward(GstEvent* event) {
+  if (held_.empty()) return PushEvent(event);
+  held_.AddEvent(event);
+  return true;
+}
+
+GstFlowReturn BackgroundElement::Drain() {
+  if (background_ == nullptr) return GST_FLOW_OK;
+  background_->Drain();
+  const GstFlowReturn result = SendComplete();
+  background_->Reset();
+  if (measured_) measured_->Interrupt();
+  return result;
+}
+
+void BackgroundElement::Reset() {
+  held_.Clear(source_pad());
+  if (background_ != nullptr) background_->Reset();
+  if (measured_) measured_->Interrupt();
+}
+
+void BackgroundElement::SetLatency(GstClockTime latency) {
+  if (latency_.exchange(latency) == latency) return;
+  GST_INFO_OBJECT(host(), "holding frames adds a latency of %" GST_TIME_FORMAT,
+                  GST_TIME_ARGS(latency));
+  gst_element_post_message(host(), gst_message_new_latency(GST_OBJECT(host())));
+}
+
+}  // namespace windhover

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "service/vision/types.h"
+
+namespace windhover {
+
+// The same registration told for another picture of the same frames, which `new_from_old` (affine,
+// upright: a scale and a shift) makes from the old one: a scaled or cropped video. The anchor and
+// the previous frame are taken to have been scaled and cropped in the same way.
+//
+// Homographies are conjugated: new_from_old * H * old_from_new. The corner covariance is carried
+// over to first order from the old picture's corners to the new picture's, through the homography
+// that four corners determine. The residual is multiplied by the geometric mean of the two scales.
+// Frame numbers, counts, overlap and quality are what they were measured as on the old picture.
+FrameRegistration RegistrationInNewPicture(const FrameRegistration& registration,
+                                           const Eigen::Matrix3d& new_from_old, int old_width,
+                                           int old_height, int new_width, int new_height);
+
+// new_from_old of a picture scaled from one size to another. Pixel centres lie at integers, so that
+// x_new + 0.5 = (x_old + 0.5) * new_width / old_width.
+Eigen::Matrix3d ScaleOfPicture(double old_width, double old_height, double new_width,
+                               double new_height);
+
+// new_from_old of a picture whose top left pixel is the old picture's pixel (x, y).
+Eigen::Matrix3d CropOfPicture(double x, double y);
+
+}  // namespace windhover

@@ -94,6 +94,14 @@ Context::Context(const Device& device, ProgramCache cache)
   if (is_cpu()) native_float_lanes_ = static_cast<int>(std::clamp<cl_uint>(lanes, 1, 16));
 }
 
+Context::~Context() {
+  try {
+    StorePrograms();
+  } catch (const std::exception&) {
+    // Without it the next process compiles again.
+  }
+}
+
 std::unique_ptr<Buffer> Context::Allocate(std::size_t size_bytes) const {
   return std::make_unique<Buffer>(*this, size_bytes);
 }
@@ -120,10 +128,16 @@ Program Context::Compile(std::string_view source, const std::string& options) {
   }
   if (!program.from_cache) {
     program.handle = BuildFromSource(source, all_options);
-    cache_.Store(key, BinaryOf(program.handle));
+    unstored_.push_back(key);
   }
   programs_.emplace(std::move(key), program);
   return program;
+}
+
+void Context::StorePrograms() {
+  const std::lock_guard lock(mutex_);
+  for (const std::string& key : unstored_) cache_.Store(key, BinaryOf(programs_.at(key).handle));
+  unstored_.clear();
 }
 
 // An empty handle where the driver does not take the binary.

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gpu-kernels/image.h"
 #include "gpu-kernels/opencl/api.h"
@@ -73,6 +74,9 @@ struct Program {
 class Context : public std::enable_shared_from_this<Context> {
  public:
   Context(const Device& device, ProgramCache cache);
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  ~Context();
 
   const DeviceInfo& device() const { return device_.info; }
   // The name that error texts use.
@@ -81,11 +85,15 @@ class Context : public std::enable_shared_from_this<Context> {
   // Lanes of the device's float vectors, 1 to 16; 1 on GPUs.
   int native_float_lanes() const { return native_float_lanes_; }
 
-  // The program of one embedded source, or several joined (kernel_sources.h), under compiler
-  // options such as "-DV=16";
-  // "-cl-std=CL1.2" is always added. Compiled once in a process, and read from the program cache
-  // where that has it. Throws DeviceError with the compiler's log.
+  // The program of an embedded source (kernel_sources.h), or of several joined, under compiler
+  // options such as "-DV=16"; "-cl-std=CL1.2" is always added. Compiled once in a process, and read
+  // from the program cache where that has it. Throws DeviceError with the compiler's log.
   Program Compile(std::string_view source, const std::string& options = "");
+
+  // Writes what was compiled here to the program cache; the destructor does the same. Best called
+  // after the kernels have run: some drivers, PoCL among them, finish compiling at the first
+  // launch, and their binaries then hold the result.
+  void StorePrograms();
 
   std::unique_ptr<Buffer> Allocate(std::size_t size_bytes) const;
 
@@ -108,8 +116,9 @@ class Context : public std::enable_shared_from_this<Context> {
   Handle<cl_context> context_;
   Handle<cl_command_queue> map_queue_;
 
-  std::mutex mutex_;  // guards programs_
+  std::mutex mutex_;  // guards programs_ and unstored_
   std::map<std::string, Program> programs_;
+  std::vector<std::string> unstored_;  // keys of programs_ that the cache does not have
 };
 
 // The buffer behind an image or other memory. Throws std::invalid_argument where it was not made by

@@ -21,20 +21,23 @@
 #if V == 1
 typedef float Lanes;
 typedef int IntLanes;
-#define LOAD(pointer) (*(pointer))
-#define STORE(value, pointer) (*(pointer) = (value))
+typedef ushort ShortLanes;
 #define TO_INT(value) convert_int_rtz(value)
 #define TO_FLOAT(value) convert_float(value)
-#define SHORTS_TO_INT(pointer) ((int)*(pointer))
+#define SHORTS_TO_INT(value) convert_int(value)
 #else
 typedef JOIN(float, V) Lanes;
 typedef JOIN(int, V) IntLanes;
-#define LOAD(pointer) JOIN(vload, V)(0, pointer)
-#define STORE(value, pointer) JOIN(vstore, V)(value, 0, pointer)
+typedef JOIN(ushort, V) ShortLanes;
 #define TO_INT(value) JOIN(JOIN(convert_int, V), _rtz)(value)
 #define TO_FLOAT(value) JOIN(convert_float, V)(value)
-#define SHORTS_TO_INT(pointer) JOIN(convert_int, V)(LOAD(pointer))
+#define SHORTS_TO_INT(value) JOIN(convert_int, V)(value)
 #endif
+
+// Global memory as vectors; the address must be a multiple of the vector's size. vload and vstore
+// would allow for any address, which compilers for CPUs pay for with several accesses.
+#define LOAD(pointer) (*(__global const Lanes*)(pointer))
+#define STORE(value, pointer) (*(__global Lanes*)(pointer) = (value))
 
 #define SAMPLES (W * H)
 // Stands for a sample that the picture does not have; grey levels are not negative.
@@ -98,19 +101,5 @@ float MaxOfLanes(Lanes value) {
   return fmax(value2.x, value2.y);
 #else
   return value;
-#endif
-}
-
-Lanes Reversed(Lanes v) {
-#if V == 1
-  return v;
-#elif V == 2
-  return v.yx;
-#elif V == 4
-  return v.wzyx;
-#elif V == 8
-  return v.s76543210;
-#else
-  return v.sfedcba9876543210;
 #endif
 }

@@ -25,9 +25,6 @@ using opencl::LocalMemory;
 using opencl::Program;
 using opencl::Queue;
 
-// Spectra are read up to this far past their end; see LoadMirroredBins.
-constexpr std::size_t kSpareFloats = 1;
-
 std::unique_ptr<Buffer> MakeFloats(const Context& context, std::size_t count) {
   return context.Allocate(count * sizeof(float));
 }
@@ -128,8 +125,7 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
 
   std::unique_ptr<TileSpectra> MakeSpectra() const override {
     auto spectra = std::make_unique<TileSpectraOpenCl>(
-        this, MakeFloats(*context_, pairs_ * 2 * samples_ + kSpareFloats),
-        MakeFloats(*context_, 2 * pairs_));
+        this, MakeFloats(*context_, pairs_ * 2 * samples_), MakeFloats(*context_, 2 * pairs_));
     const auto clear = [](Buffer& buffer) {
       std::byte* bytes = buffer.Map(Access::kWrite);
       std::fill_n(bytes, buffer.size_bytes(), std::byte{0});

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 
+// Written as vectors, read singly, or the other way round.
+typedef union {
+  IntLanes lanes[BATCH / V];
+  int single[BATCH];
+} Offsets;
+typedef union {
+  ShortLanes lanes[BATCH / V];
+  ushort single[BATCH];
+} PixelPairs;
+
 // A row of samples: where the four source pixels of each lie, its place between them, whether it is
 // seen. The homogeneous coordinates along the row are origin + step * x.
 void LocateSamples(float3 origin, float3 step, int first, int width, int height, int stride,
-                   int* offsets, float* fraction_x, float* fraction_y, float* seen) {
+                   IntLanes* offsets, Lanes* fraction_x, Lanes* fraction_y, Lanes* seen) {
   const float last_x = (float)(width - 1);
   const float last_y = (float)(height - 1);
   const int last_left = max(width - 2, 0);
   const int last_top = max(height - 2, 0);
-  for (int i = 0; i < BATCH; i += V) {
-    const Lanes x = TO_FLOAT(LaneNumbers() + (first + i));
+  for (int i = 0; i < BATCH / V; ++i) {
+    const Lanes x = TO_FLOAT(LaneNumbers() + (first + i * V));
     const Lanes w = origin.z + step.z * x;
     const Lanes inverse = 1.0f / w;
     const Lanes u = (origin.x + step.x * x) * inverse;
@@ -19,10 +29,10 @@ void LocateSamples(float3 origin, float3 step, int first, int width, int height,
     const Lanes safe_v = select((Lanes)(0.0f), v, inside);
     const IntLanes left = min(TO_INT(safe_u), (IntLanes)(last_left));
     const IntLanes top = min(TO_INT(safe_v), (IntLanes)(last_top));
-    STORE(top * stride + left, offsets + i);
-    STORE(safe_u - TO_FLOAT(left), fraction_x + i);
-    STORE(safe_v - TO_FLOAT(top), fraction_y + i);
-    STORE(select((Lanes)(0.0f), (Lanes)(1.0f), inside), seen + i);
+    offsets[i] = top * stride + left;
+    fraction_x[i] = safe_u - TO_FLOAT(left);
+    fraction_y[i] = safe_v - TO_FLOAT(top);
+    seen[i] = select((Lanes)(0.0f), (Lanes)(1.0f), inside);
   }
 }
 
@@ -41,36 +51,39 @@ __kernel void SampleTiles(__global const uchar* restrict picture, int width, int
   __global const float* m = from_tile + 9 * min(tile, tile_count - 1);
   const float3 step = (float3)(m[0], m[3], m[6]);
   const int to_next_row = height > 1 ? stride : 0;
-  int offsets[BATCH];
-  float fraction_x[BATCH];
-  float fraction_y[BATCH];
-  float seen[BATCH];
-  ushort upper[BATCH];
-  ushort lower[BATCH];
+  Lanes fraction_x[BATCH / V];
+  Lanes fraction_y[BATCH / V];
+  Lanes seen[BATCH / V];
+  Offsets offsets;
+  PixelPairs upper;
+  PixelPairs lower;
   for (int y = first_row; y < first_row + ROWS; ++y) {
     __global float* out = samples + tile * SAMPLES + y * W;
     const float3 origin = (float3)(m[1], m[4], m[7]) * (float)y + (float3)(m[2], m[5], m[8]);
     Lanes value_sum = 0.0f;
     Lanes seen_sum = 0.0f;
     for (int x = 0; x < W; x += BATCH) {
-      LocateSamples(origin, step, x, width, height, stride, offsets, fraction_x, fraction_y, seen);
+      LocateSamples(origin, step, x, width, height, stride, offsets.lanes, fraction_x, fraction_y,
+                    seen);
+#pragma unroll 8
       for (int i = 0; i < BATCH; ++i) {
-        upper[i] = as_ushort(vload2(0, picture + offsets[i]));
-        lower[i] = as_ushort(vload2(0, picture + offsets[i] + to_next_row));
+        __global const uchar* pixel = picture + offsets.single[i];
+        upper.single[i] = as_ushort(vload2(0, pixel));
+        lower.single[i] = as_ushort(vload2(0, pixel + to_next_row));
       }
-      for (int i = 0; i < BATCH; i += V) {
-        const IntLanes up = SHORTS_TO_INT(upper + i);
-        const IntLanes low = SHORTS_TO_INT(lower + i);
+      for (int i = 0; i < BATCH / V; ++i) {
+        const IntLanes up = SHORTS_TO_INT(upper.lanes[i]);
+        const IntLanes low = SHORTS_TO_INT(lower.lanes[i]);
         const Lanes a = TO_FLOAT(up & 0xff);
         const Lanes c = TO_FLOAT(low & 0xff);
-        const Lanes above = a + LOAD(fraction_x + i) * (TO_FLOAT(up >> 8) - a);
-        const Lanes below = c + LOAD(fraction_x + i) * (TO_FLOAT(low >> 8) - c);
-        const Lanes value = above + LOAD(fraction_y + i) * (below - above);
-        const Lanes is_seen = exists * LOAD(seen + i);
-        const Lanes weight = is_seen * LOAD(window_x + x + i);
+        const Lanes above = a + fraction_x[i] * (TO_FLOAT(up >> 8) - a);
+        const Lanes below = c + fraction_x[i] * (TO_FLOAT(low >> 8) - c);
+        const Lanes value = above + fraction_y[i] * (below - above);
+        const Lanes is_seen = exists * seen[i];
+        const Lanes weight = is_seen * LOAD(window_x + x + i * V);
         value_sum += weight * value;
         seen_sum += weight;
-        STORE(select((Lanes)(UNSEEN), value, is_seen > 0.0f), out + x + i);
+        STORE(select((Lanes)(UNSEEN), value, is_seen > 0.0f), out + x + i * V);
       }
     }
     row_sums[2 * H * tile + y] = window_y[y] * SumOfLanes(value_sum);

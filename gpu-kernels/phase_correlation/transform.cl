@@ -182,21 +182,27 @@ Complex LoadBins(__global const float* re, int x) {
   return (Complex){LOAD(re + x), LOAD(re + SAMPLES + x)};
 }
 
-// Values at -x to -(x + V - 1) of a spectrum's row. Where x is 0 the first of them lies one past the
-// row, and is set right; spectra have a spare value at the end.
-Complex LoadMirroredBins(__global const float* re, int x) {
-  __global const float* start = re + W - x - (V - 1);
-  Complex bins = {Reversed(LOAD(start)), Reversed(LOAD(start + SAMPLES))};
-  if (x == 0) {
+// Values at -x to -(x + V - 1) of a row of one plane; columns continue periodically.
+Lanes LoadMirrored(__global const float* row, int x) {
+  const float first = row[(W - x) & (W - 1)];
 #if V == 1
-    bins.re = re[0];
-    bins.im = re[SAMPLES];
+  return first;
 #else
-    bins.re.s0 = re[0];
-    bins.im.s0 = re[SAMPLES];
+  const Lanes rest = LOAD(row + W - x - V);
+#if V == 2
+  return (float2)(first, rest.s1);
+#elif V == 4
+  return (float4)(first, rest.s32, rest.s1);
+#elif V == 8
+  return (float8)(first, rest.s7654, rest.s32, rest.s1);
+#else
+  return (float16)(first, rest.sfedcba98, rest.s7654, rest.s32, rest.s1);
 #endif
-  }
-  return bins;
+#endif
+}
+
+Complex LoadMirroredBins(__global const float* re, int x) {
+  return (Complex){LoadMirrored(re, x), LoadMirrored(re + SAMPLES, x)};
 }
 
 // Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak of

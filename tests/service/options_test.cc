@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "service/options/overlay_options.h"
 #include "service/options/publish_options.h"
 
 namespace windhover {
@@ -21,7 +22,7 @@ namespace {
 using ::testing::HasSubstr;
 
 using AllOptions = std::tuple<DeviceOptions, RegistrationOptions, BackgroundOptions, MotionOptions,
-                              PublishOptions>;
+                              PublishOptions, OverlayOptions>;
 
 template <typename Visit>
 void ForEachStruct(Visit&& visit) {

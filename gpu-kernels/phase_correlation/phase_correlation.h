@@ -52,8 +52,8 @@ struct TilePeak {
   float noise = 0.0F;
   // Share of the tile's window weight, 0 to 1, for which the current picture has pixels.
   float coverage = 0.0F;
-  // False when there is no peak: no texture, coverage under 1/4 on either side, a peak not above 4
-  // times the noise, or one at the wrap-around edge. All other fields are finite even then.
+  // False when there is no peak: no texture, coverage under 1/4 on either side, a peak not above
+  // 10 times the noise, or one at the wrap-around edge. All other fields are finite even then.
   bool valid = false;
 };
 

@@ -11,6 +11,7 @@ namespace windhover {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kDamping = 64.0;
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 512;
 constexpr int kMaxTiles = 1024;
@@ -141,7 +142,8 @@ PhaseCorrelationTables::PhaseCorrelationTables(const PhaseCorrelationSettings& s
   spectral_weight = SpectralWeight(tile_width, tile_height, settings.peak_sigma_px);
   const double grey_variance =
       static_cast<double>(settings.noise_sigma) * settings.noise_sigma + 1.0 / 12.0;
-  noise_power = static_cast<float>(grey_variance * SumOfSquares(window_x) * SumOfSquares(window_y));
+  noise_power = static_cast<float>(kDamping * grey_variance * SumOfSquares(window_x) *
+                                   SumOfSquares(window_y));
   peak_radius = std::min(2 + static_cast<int>(std::ceil(3.0F * settings.peak_sigma_px)),
                          std::min(tile_width, tile_height) / 4);
 }

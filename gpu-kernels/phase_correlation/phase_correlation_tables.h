@@ -8,8 +8,11 @@
 
 namespace windhover {
 
-// A peak is believed where its height is more than this many times the surface's noise.
-inline constexpr float kMinPeakToNoise = 4.0F;
+// A peak is believed where its height is more than this many times the surface's noise. The surface
+// of two tiles of pure noise is strongest at small shifts, where the window lets most of both in:
+// its highest sample has 5 to 8.5 times the noise in 9 of 10 cases, for tiles of 32 to 128 px.
+// Textured tiles reach 30 to 100 times.
+inline constexpr float kMinPeakToNoise = 10.0F;
 // A tile is believed where the picture covers at least this share of its window weight.
 inline constexpr float kMinCoverage = 0.25F;
 
@@ -35,9 +38,11 @@ struct PhaseCorrelationTables {
   // match without shift a peak of exactly 1.
   std::vector<float> spectral_weight;
 
-  // Added to the cross power's magnitude before it divides the cross power: the noise power that a
-  // bin is expected to have, (noise_sigma^2 + 1/12) * sum of the squared weights of the window,
-  // where 1/12 is the power of rounding to whole grey levels.
+  // Added to the cross power's magnitude before it divides the cross power: 64 times the noise
+  // power that a bin is expected to have, (noise_sigma^2 + 1/12) * sum of the squared weights of
+  // the window, where 1/12 is the power of rounding to whole grey levels. Measured on textures of
+  // 128 px: against a factor of 1, 64 halves the error under noise and blur, costs nothing without
+  // them, and finds shifts of 30 px that 1 loses.
   float noise_power;
 
   // Half side in px of the square about the highest sample that counts as the peak's neighbourhood:
@@ -62,13 +67,13 @@ struct PeakNeighbourhood {
 // The last step of the correlation, for one tile: sub-pixel place, height, footprint, validity.
 //
 // sub-pixel   for each axis, with l, c, r the highest sample and its two neighbours: eq. 2.19 where
-// all
-//             are positive, else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5; 0
-//             where the denominator is not positive.
+//             all are positive, else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5;
+//             0 where the denominator is not positive.
 // footprint   samples of the neighbourhood above max(3 * noise, height / 16), each weighted with
-// what
-//             it has above that; second central moments, plus 1/12 px^2 for a sample's own extent.
-// covariance  footprint moments times (noise / height)^2, plus 1e-6 px^2 on the diagonal.
+//             its excess over that; second central moments, plus 1/12 px^2 for a sample's extent.
+// covariance  footprint moments times (noise / height)^2, plus 1e-6 px^2 on the diagonal. Agrees
+//             within a factor of 3 with the errors measured on textures with noise of sigma 0 to 5
+//             and shifts of up to 3 px.
 // valid       coverages >= kMinCoverage, height > kMinPeakToNoise * noise, and the highest sample
 //             not at a shift of exactly half a tile's side. Where not valid for want of a positive
 //             height, the offset is 0 and the covariance that of a uniform guess over the tile.

@@ -23,7 +23,9 @@ if(WINDHOVER_SANITIZE)
   add_compile_options(-fsanitize=${WINDHOVER_SANITIZE} -fno-omit-frame-pointer
                       -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${WINDHOVER_SANITIZE})
-  add_compile_definitions(WINDHOVER_SANITIZED)
+  add_compile_definitions(WINDHOVER_SANITIZED _GLIBCXX_ASSERTIONS)
+  # Assertions stay in; line numbers are all the debug information that a report needs.
+  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
 endif()
 
 # windhover_library(NAME SOURCES... [LINK PUBLIC|PRIVATE targets...]) makes the static library

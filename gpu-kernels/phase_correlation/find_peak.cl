@@ -7,7 +7,7 @@
 #define RECORD (5 + SIDE * SIDE)
 
 // Sum of the squares of a row's samples, without those up to RADIUS from column `skip_x`.
-float SquaresBeside(__global const float* row, int skip_x) {
+INLINE float SquaresBeside(__global const float* row, int skip_x) {
   Lanes sum = 0.0f;
   for (int x = 0; x < W; x += V) {
     const IntLanes distance = ((LaneNumbers() + (x - skip_x + W / 2)) & (W - 1)) - W / 2;

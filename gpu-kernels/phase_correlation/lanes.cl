@@ -39,12 +39,15 @@ typedef JOIN(ushort, V) ShortLanes;
 #define LOAD(pointer) (*(__global const Lanes*)(pointer))
 #define STORE(value, pointer) (*(__global Lanes*)(pointer) = (value))
 
+// Compilers for CPUs that leave a function as it is may break its wide vectors into narrower ones.
+#define INLINE __attribute__((always_inline)) static inline
+
 #define SAMPLES (W * H)
 // Stands for a sample that the picture does not have; grey levels are not negative.
 #define UNSEEN (-1.0f)
 
 // Numbers of the lanes, 0 to V - 1.
-IntLanes LaneNumbers(void) {
+INLINE IntLanes LaneNumbers(void) {
 #if V == 1
   return 0;
 #elif V == 2
@@ -58,7 +61,7 @@ IntLanes LaneNumbers(void) {
 #endif
 }
 
-float SumOfLanes(Lanes value) {
+INLINE float SumOfLanes(Lanes value) {
 #if V >= 16
   const float8 value8 = value.lo + value.hi;
 #elif V == 8
@@ -81,7 +84,7 @@ float SumOfLanes(Lanes value) {
 #endif
 }
 
-float MaxOfLanes(Lanes value) {
+INLINE float MaxOfLanes(Lanes value) {
 #if V >= 16
   const float8 value8 = fmax(value.lo, value.hi);
 #elif V == 8

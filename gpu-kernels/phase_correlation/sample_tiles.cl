@@ -12,7 +12,7 @@ typedef union {
 
 // A row of samples: where the four source pixels of each lie, its place between them, whether it is
 // seen. The homogeneous coordinates along the row are origin + step * x.
-void LocateSamples(float3 origin, float3 step, int first, int width, int height, int stride,
+INLINE void LocateSamples(float3 origin, float3 step, int first, int width, int height, int stride,
                    IntLanes* offsets, Lanes* fraction_x, Lanes* fraction_y, Lanes* seen) {
   const float last_x = (float)(width - 1);
   const float last_y = (float)(height - 1);

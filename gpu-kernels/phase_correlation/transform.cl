@@ -9,7 +9,7 @@
 // frequency k lies after the last split.
 
 // Forward transform of 4 values, natural order.
-void Transform4(Lanes* re, Lanes* im) {
+INLINE void Transform4(Lanes* re, Lanes* im) {
   const Lanes a_re = re[0] + re[2], a_im = im[0] + im[2];
   const Lanes b_re = re[0] - re[2], b_im = im[0] - im[2];
   const Lanes c_re = re[1] + re[3], c_im = im[1] + im[3];
@@ -21,7 +21,7 @@ void Transform4(Lanes* re, Lanes* im) {
 }
 
 // Forward transform of 8 values, natural order.
-void Transform8(Lanes* re, Lanes* im) {
+INLINE void Transform8(Lanes* re, Lanes* im) {
   Lanes even_re[4] = {re[0], re[2], re[4], re[6]}, even_im[4] = {im[0], im[2], im[4], im[6]};
   Lanes odd_re[4] = {re[1], re[3], re[5], re[7]}, odd_im[4] = {im[1], im[3], im[5], im[7]};
   Transform4(even_re, even_im);
@@ -42,7 +42,7 @@ void Transform8(Lanes* re, Lanes* im) {
 // Splits every block of `block` values into RADIX blocks, of which block m takes the frequencies
 // RADIX * q + m.
 #define DEFINE_SPLIT(RADIX)                                                                      \
-  void SplitBy##RADIX(Lanes* re, Lanes* im, __global const float2* twiddle, int side, int block) { \
+  INLINE void SplitBy##RADIX(Lanes* re, Lanes* im, __global const float2* twiddle, int side, int block) { \
     const int step = block / RADIX;                                                              \
     for (int j = 0; j < step; ++j) {                                                             \
       float2 turn[RADIX];                                                                        \
@@ -66,14 +66,14 @@ DEFINE_SPLIT(8)
 
 // The last split, which needs no twiddles.
 #define DEFINE_FINISH(RADIX)                                             \
-  void FinishBy##RADIX(Lanes* re, Lanes* im, int side) {                 \
+  INLINE void FinishBy##RADIX(Lanes* re, Lanes* im, int side) {                 \
     for (int at = 0; at < side; at += RADIX) Transform##RADIX(re + at, im + at); \
   }
 DEFINE_FINISH(4)
 DEFINE_FINISH(8)
 
 // In place; frequency k comes to lie at order[k] (PhaseCorrelationOpenCl makes that table).
-void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle, int side) {
+INLINE void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle, int side) {
   int block = side;
   for (; block > 8; block /= block == 16 ? 4 : 8) {
     if (block == 16) {
@@ -89,9 +89,28 @@ void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle, int si
   }
 }
 
+// a0 b0 a1 b1 ... of the lower, and of the upper halves of two vectors.
+#if V == 2
+#define INTERLEAVE_LOW(a, b) (float2)(a.x, b.x)
+#define INTERLEAVE_HIGH(a, b) (float2)(a.y, b.y)
+#elif V == 4
+#define INTERLEAVE_LOW(a, b) (float4)(a.x, b.x, a.y, b.y)
+#define INTERLEAVE_HIGH(a, b) (float4)(a.z, b.z, a.w, b.w)
+#elif V == 8
+#define INTERLEAVE_LOW(a, b) (float8)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3)
+#define INTERLEAVE_HIGH(a, b) (float8)(a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7)
+#elif V == 16
+#define INTERLEAVE_LOW(a, b)                                                                  \
+  (float16)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, \
+            a.s7, b.s7)
+#define INTERLEAVE_HIGH(a, b)                                                                 \
+  (float16)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, \
+            a.sf, b.sf)
+#endif
+
 // Writes V columns as V rows of `side` values. A block of V x V is transposed in registers: each
 // round interleaves vector i with vector i + V / 2, which turns the bits of (vector, lane) by one.
-void StoreTransposed(const Lanes* values, __global const int* order, int side,
+INLINE void StoreTransposed(const Lanes* values, __global const int* order, int side,
                      __global float* restrict out) {
   for (int k = 0; k < side; k += V) {
 #if V == 1
@@ -104,8 +123,8 @@ void StoreTransposed(const Lanes* values, __global const int* order, int side,
     for (int round = 1; round < V; round *= 2) {
 #pragma unroll
       for (int i = 0; i < V / 2; ++i) {
-        turned[2 * i].even = block[i].lo, turned[2 * i].odd = block[i + V / 2].lo;
-        turned[2 * i + 1].even = block[i].hi, turned[2 * i + 1].odd = block[i + V / 2].hi;
+        turned[2 * i] = INTERLEAVE_LOW(block[i], block[i + V / 2]);
+        turned[2 * i + 1] = INTERLEAVE_HIGH(block[i], block[i + V / 2]);
       }
 #pragma unroll
       for (int i = 0; i < V; ++i) block[i] = turned[i];
@@ -116,7 +135,7 @@ void StoreTransposed(const Lanes* values, __global const int* order, int side,
   }
 }
 
-float SumOfRow(__global const float* row, int count) {
+INLINE float SumOfRow(__global const float* row, int count) {
   Lanes sum = 0.0f;
   for (int i = 0; i < count; i += V) sum += LOAD(row + i);
   return SumOfLanes(sum);
@@ -178,12 +197,12 @@ typedef struct {
 } Complex;
 
 // Values at x to x + V - 1 of a spectrum's row.
-Complex LoadBins(__global const float* re, int x) {
+INLINE Complex LoadBins(__global const float* re, int x) {
   return (Complex){LOAD(re + x), LOAD(re + SAMPLES + x)};
 }
 
 // Values at -x to -(x + V - 1) of a row of one plane; columns continue periodically.
-Lanes LoadMirrored(__global const float* row, int x) {
+INLINE Lanes LoadMirrored(__global const float* row, int x) {
   const float first = row[(W - x) & (W - 1)];
 #if V == 1
   return first;
@@ -201,13 +220,13 @@ Lanes LoadMirrored(__global const float* row, int x) {
 #endif
 }
 
-Complex LoadMirroredBins(__global const float* re, int x) {
+INLINE Complex LoadMirroredBins(__global const float* re, int x) {
   return (Complex){LoadMirrored(re, x), LoadMirrored(re + SAMPLES, x)};
 }
 
 // Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak of
 // current(x + d) = reference(x) at d), weighted. `noise_power` damps what does not rise above it.
-Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight, float noise_power) {
+INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight, float noise_power) {
   const Lanes re = current.re * reference.re + current.im * reference.im;
   const Lanes im = current.im * reference.re - current.re * reference.im;
   const Lanes scale = weight / (sqrt(re * re + im * im) + noise_power);

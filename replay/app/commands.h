@@ -8,5 +8,7 @@ namespace windhover::replay {
 // Each adds one subcommand to windhover-replay. What it does runs in the subcommand's final
 // callback; an error is an exception with a text for people.
 void AddRenderCommand(CLI::App& app);
+void AddDetectCommand(CLI::App& app);
+void AddScoreCommand(CLI::App& app);
 
 }  // namespace windhover::replay

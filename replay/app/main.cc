@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "windhover-replay " WINDHOVER_VERSION);
   app.require_subcommand(1);
   windhover::replay::AddRenderCommand(app);
+  windhover::replay::AddDetectCommand(app);
+  windhover::replay::AddScoreCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

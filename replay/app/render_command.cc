@@ -67,8 +67,7 @@ void Render(const RenderSettings& settings) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const int threads = settings.threads > 0 ? settings.threads : cores;
 
-  const std::filesystem::path final_path = settings.out / plan.number;
-  PendingFolder folder(final_path);
+  PendingFolder folder(settings.out);
   const SequenceInfo info = {.name = plan.number + "-" + plan.name,
                              .frame_rate_hz = plan.frame_rate_hz,
                              .frames = plan.frames,
@@ -93,20 +92,21 @@ void Render(const RenderSettings& settings) {
   WriteTruth(folder.path(), truth);
   WriteSequenceInfo(folder.path(), info);
   folder.Commit();
-  std::printf("%s\n", final_path.string().c_str());
+  std::printf("%s\n", settings.out.string().c_str());
 }
 
 }  // namespace
 
 void AddRenderCommand(CLI::App& app) {
   auto settings = std::make_shared<RenderSettings>();
-  CLI::App* command = app.add_subcommand(
-      "render", "Render a flight with exact truth into OUT/<number>, and print that path");
+  CLI::App* command =
+      app.add_subcommand("render", "Render a flight with exact truth as a MOTChallenge sequence");
   command
       ->add_option("--sequence", settings->sequence,
                    "Number or name of the flight; 'flight' is the first one")
       ->capture_default_str();
-  command->add_option("--out", settings->out, "Folder of the dataset")->required();
+  command->add_option("--out", settings->out, "The sequence's folder; appears when it is complete")
+      ->required();
   command->add_option("--frames", settings->frames, "Frames; default: as the flight has")
       ->check(CLI::Range(1, 100000));
   command->add_option(

@@ -62,17 +62,21 @@ std::string BoxText(const LabelledBox& box) {
 
 std::vector<LabelledBox> ReadJsonLines(const std::filesystem::path& file) {
   std::vector<LabelledBox> boxes;
+  std::string stream;
+  bool first = true;
   ForEachLine(file, [&](std::size_t line, std::string_view text) {
     try {
-      const nlohmann::json object = nlohmann::json::parse(text);
-      if (!object.contains("detections")) return;
-      const int frame = object.at("frame_number").get<int>() + 1;
-      for (const nlohmann::json& detection : object.at("detections")) {
-        const nlohmann::json& box = detection.at("box");
+      const nlohmann::json sample = nlohmann::json::parse(text);
+      if (sample.at("type") != "detections") return;
+      if (first) stream = sample.at("stream");
+      if (stream != sample.at("stream")) throw FormatError(file, line, "a second stream");
+      first = false;
+      const int frame = sample.at("frame").get<int>() + 1;
+      for (const nlohmann::json& one : sample.at("detections")) {
         boxes.push_back({frame,
-                         detection.value("track_id", std::int64_t{-1}),
-                         {box.at("x"), box.at("y"), box.at("width"), box.at("height")},
-                         detection.value("score", 1.0)});
+                         one.at("track").get<std::int64_t>(),
+                         {one.at("x"), one.at("y"), one.at("width"), one.at("height")},
+                         one.at("score")});
       }
     } catch (const nlohmann::json::exception& error) {
       throw FormatError(file, line, error.what());

@@ -28,8 +28,8 @@ void WriteTruthBoxes(const std::filesystem::path& file, const std::vector<Labell
 // det.txt: ten columns as MOTChallenge has them, the last three -1.
 void WriteDetections(const std::filesystem::path& file, const std::vector<LabelledBox>& boxes);
 
-// det.txt, or where the name ends in .jsonl the lines of `windhover watch --json`: those without
-// detections are passed over.
+// det.txt, or where the name ends in .jsonl the lines of `windhover watch --json` for one stream;
+// lines of other types than "detections" are passed over.
 std::vector<LabelledBox> ReadDetections(const std::filesystem::path& file);
 
 }  // namespace windhover::replay

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/app/option_settings.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <tuple>
+
+#include "service/options/options.h"
+#include "service/options/overlay_options.h"
+#include "service/options/publish_options.h"
+
+namespace windhover {
+namespace {
+
+using AllOptions = std::tuple<DeviceOptions, RegistrationOptions, BackgroundOptions, MotionOptions,
+                              PublishOptions, OverlayOptions>;
+
+template <typename S, typename T>
+std::string Range(const NumberField<S, T>& field) {
+  return fmt::format("{} to {}{}{}", field.minimum, field.maximum, field.unit.empty() ? "" : " ",
+                     field.unit);
+}
+template <typename S>
+std::string Range(const FlagField<S>&) {
+  return "true or false";
+}
+template <typename S>
+std::string Range(const TextField<S>&) {
+  return "text";
+}
+template <typename S, typename E, std::size_t N>
+std::string Range(const ChoiceField<S, E, N>& field) {
+  return fmt::format("{}", fmt::join(field.names, " or "));
+}
+
+// Calls visit(options, field) for each option of the pipeline.
+template <typename Visit>
+void ForEachOption(Visit visit) {
+  std::apply(
+      [&](const auto&... options) {
+        const auto visit_struct = [&](const auto& one) {
+          ForEachField<std::decay_t<decltype(one)>>([&](const auto& field) { visit(one, field); });
+        };
+        (visit_struct(options), ...);
+      },
+      AllOptions());
+}
+
+std::string Names() {
+  std::vector<std::string_view> names;
+  ForEachOption([&](const auto&, const auto& field) { names.push_back(field.name); });
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+OptionSetting ParseOptionSetting(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw OptionError("'" + text + "' is not of the form option=value");
+  }
+  OptionSetting setting{text.substr(0, equals), text.substr(equals + 1)};
+  AllOptions all;
+  const bool known = std::apply(
+      [&](auto&... options) {
+        // Not short-circuited: several structs may have an option of that name.
+        return (static_cast<int>(SetOption(options, setting.name, setting.value)) + ...) > 0;
+      },
+      all);
+  if (!known) {
+    throw OptionError("No option is called '" + setting.name + "'. There are: " + Names());
+  }
+  return setting;
+}
+
+std::string DescribeOptions() {
+  std::string text;
+  ForEachOption([&](const auto& options, const auto& field) {
+    text += fmt::format("  {}={}  ({})\n      {}\n", field.name, OptionText(options, field.name),
+                        Range(field), field.meaning);
+  });
+  return text;
+}
+
+}  // namespace windhover

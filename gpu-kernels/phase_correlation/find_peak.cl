@@ -1,41 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#define SIDE (2 * RADIUS + 1)
-// What is written for each tile: column and row of the highest sample, mean square of the samples
-// outside its neighbourhood, coverage of the reference and of the current tile, then the
-// neighbourhood's SIDE * SIDE samples, row-major; columns and rows continue periodically.
-#define RECORD (5 + SIDE * SIDE)
-
-// Sum of the squares of a row's samples, without those up to RADIUS from column `skip_x`.
-INLINE float SquaresBeside(__global const float* row, int skip_x) {
+// Sum of the squares of a row's samples, without those up to `radius` from column `skip_x`.
+INLINE float SquaresBeside(__global const float* row, int width, int skip_x, int radius) {
   Lanes sum = 0.0f;
-  for (int x = 0; x < W; x += V) {
-    const IntLanes distance = ((LaneNumbers() + (x - skip_x + W / 2)) & (W - 1)) - W / 2;
+  for (int x = 0; x < width; x += V) {
+    const IntLanes distance =
+        ((LaneNumbers() + (x - skip_x + width / 2)) & (width - 1)) - width / 2;
     const Lanes value = LOAD(row + x);
-    sum += select(value * value, (Lanes)(0.0f), (distance <= RADIUS) & (distance >= -RADIUS));
+    sum += select(value * value, (Lanes)(0.0f), (distance <= radius) & (distance >= -radius));
   }
   return SumOfLanes(sum);
 }
 
 // Finds the highest sample of each tile's correlation surface, the first one in row-major order
-// where several are equal. One work-group a tile; `row_squares` holds H values, `best_values` and
-// `best_places` GROUP each.
-__kernel void FindPeak(__global const float* restrict surfaces,
+// where several are equal. One work-group a tile. `row_squares` holds `height` values, `best_values`
+// and `best_places` GROUP each.
+//
+// A tile's record: column and row of the highest sample, mean square of the samples outside its
+// neighbourhood, coverage of the reference and of the current tile, then the neighbourhood's
+// (2 * radius + 1)^2 samples, row-major; columns and rows continue periodically.
+__kernel void FindPeak(__global const float* restrict surfaces, int width, int height, int radius,
                        __global const float* restrict reference_coverage,
                        __global const float* restrict current_coverage,
                        __global float* restrict records, __local float* row_squares,
                        __local float* best_values, __local int* best_places) {
   const int item = get_local_id(0);
   const int tile = get_group_id(0);
-  __global const float* surface = surfaces + tile * SAMPLES;
+  const int side = 2 * radius + 1;
+  __global const float* surface = surfaces + tile * width * height;
 
-  float best = surface[item * W];
-  int place = item * W;
-  for (int y = item; y < H; y += GROUP) {
-    __global const float* row = surface + y * W;
+  float best = surface[item * width];
+  int place = item * width;
+  for (int y = item; y < height; y += GROUP) {
+    __global const float* row = surface + y * width;
     Lanes highest = LOAD(row);
     Lanes squares = highest * highest;
-    for (int x = V; x < W; x += V) {
+    for (int x = V; x < width; x += V) {
       const Lanes value = LOAD(row + x);
       highest = fmax(highest, value);
       squares += value * value;
@@ -45,8 +45,8 @@ __kernel void FindPeak(__global const float* restrict surfaces,
     if (row_highest > best) {
       best = row_highest;
       int x = 0;
-      while (x + 1 < W && row[x] != best) ++x;
-      place = y * W + x;
+      while (x + 1 < width && row[x] != best) ++x;
+      place = y * width + x;
     }
   }
   best_values[item] = best;
@@ -64,23 +64,23 @@ __kernel void FindPeak(__global const float* restrict surfaces,
     barrier(CLK_LOCAL_MEM_FENCE);
   }
 
-  const int peak_x = best_places[0] & (W - 1);
-  const int peak_y = best_places[0] / W;
-  __global float* record = records + tile * RECORD;
-  for (int i = item; i < SIDE; i += GROUP) {
-    const int y = (peak_y + i - RADIUS) & (H - 1);
-    row_squares[y] = SquaresBeside(surface + y * W, peak_x);
-    for (int x = 0; x < SIDE; ++x) {
-      record[5 + i * SIDE + x] = surface[y * W + ((peak_x + x - RADIUS) & (W - 1))];
+  const int peak_x = best_places[0] & (width - 1);
+  const int peak_y = best_places[0] / width;
+  __global float* record = records + tile * (5 + side * side);
+  for (int i = item; i < side; i += GROUP) {
+    const int y = (peak_y + i - radius) & (height - 1);
+    row_squares[y] = SquaresBeside(surface + y * width, width, peak_x, radius);
+    for (int x = 0; x < side; ++x) {
+      record[5 + i * side + x] = surface[y * width + ((peak_x + x - radius) & (width - 1))];
     }
   }
   barrier(CLK_LOCAL_MEM_FENCE);
   if (item == 0) {
     float sum = 0.0f;
-    for (int y = 0; y < H; ++y) sum += row_squares[y];
+    for (int y = 0; y < height; ++y) sum += row_squares[y];
     record[0] = (float)peak_x;
     record[1] = (float)peak_y;
-    record[2] = sum / (float)(SAMPLES - SIDE * SIDE);
+    record[2] = sum / (float)(width * height - side * side);
     record[3] = reference_coverage[tile];
     record[4] = current_coverage[tile];
   }

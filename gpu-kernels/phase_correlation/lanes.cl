@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Tiled phase correlation (thesis 2.4.1), common part. The sources of this folder are compiled as
-// one program: this file, then transform.cl, sample_tiles.cl, find_peak.cl.
+// Tiled phase correlation (thesis 2.4.1), common part: vectors of lanes. It comes before
+// sample_tiles.cl and find_peak.cl in one program, and before transform.cl in one for each side.
 //
 // Two real tiles of one picture travel as the real and the imaginary part of one complex transform;
 // their spectra are told apart by symmetry where they meet the other picture's. Complex data is
-// planar: for each pair of tiles a plane of real parts, then one of imaginary parts, H x W each.
+// planar: for each pair of tiles a plane of real parts, then one of imaginary parts.
 //
 // Macros given to the compiler:
-//   W, H     tile sides in px, powers of two, 16 to 512
 //   V        vector lanes: 1, 2, 4, 8 or 16
-//   ROWS     tile rows that a work-item samples, a divisor of H
-//   BATCH    samples of a row that are worked on together: a divisor of W, a multiple of V
+//   N        values of a column in transform.cl: a tile's side, a power of two, 16 to 512
+//   ROWS     tile rows that a work-item samples, 1 to 16, a power of two
+//   BATCH    samples of a row that are worked on together, a multiple of V
 //   GROUP    work-items that look for a tile's peak together, a power of two
-//   RADIUS   half side of a peak's neighbourhood, px
 
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -42,7 +41,6 @@ typedef JOIN(ushort, V) ShortLanes;
 // Compilers for CPUs that leave a function as it is may break its wide vectors into narrower ones.
 #define INLINE __attribute__((always_inline)) static inline
 
-#define SAMPLES (W * H)
 // Stands for a sample that the picture does not have; grey levels are not negative.
 #define UNSEEN (-1.0f)
 

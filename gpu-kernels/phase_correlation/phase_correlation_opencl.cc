@@ -6,7 +6,6 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "gpu-kernels/opencl/kernel.h"
@@ -79,6 +78,10 @@ std::vector<float> FullSpectralWeight(const PhaseCorrelationTables& tables) {
   return full;
 }
 
+std::string Define(const char* name, int value) {
+  return std::string("-D") + name + "=" + std::to_string(value) + " ";
+}
+
 class PhaseCorrelationOpenCl;
 
 class TileSpectraOpenCl : public TileSpectra {
@@ -119,7 +122,7 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
         records_(MakeFloats(context, settings.tiles.size() * record_floats_)),
         host_from_tile_(9 * settings.tiles.size()),
         host_records_(settings.tiles.size() * record_floats_),
-        kernels_(Compile()) {}
+        kernels_(MakeKernels()) {}
 
   const PhaseCorrelationSettings& settings() const override { return settings_; }
 
@@ -150,15 +153,16 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
     queue_.EnqueueWrite(*from_tile_, host_from_tile_.data(),
                         host_from_tile_.size() * sizeof(float));
     const std::size_t row_items = tables_.tile_height / layout_.sample_rows;
-    kernels_.sample.Enqueue(
-        queue_, {.global = {row_items, 2 * pairs_, 1}}, picture, picture.width(), picture.height(),
-        static_cast<cl_int>(picture.stride()), *from_tile_,
-        static_cast<cl_int>(settings_.tiles.size()), *window_x_, *window_y_, *tiles_, *row_sums_);
-    kernels_.transform_samples.Enqueue(queue_, ColumnsOf(tables_.tile_width), *tiles_, *row_sums_,
-                                       *window_x_, *window_y_, tables_.window_sum, *twiddle_y_,
-                                       *order_y_, *own.coverage, *columns_);
+    kernels_.sample.Enqueue(queue_, {.global = {row_items, 2 * pairs_, 1}}, picture,
+                            picture.width(), picture.height(),
+                            static_cast<cl_int>(picture.stride()), *from_tile_,
+                            static_cast<cl_int>(settings_.tiles.size()), tables_.tile_width,
+                            tables_.tile_height, *window_x_, *window_y_, *tiles_, *row_sums_);
+    kernels_.transform_samples.Enqueue(
+        queue_, ColumnsOf(tables_.tile_width), *tiles_, *row_sums_, tables_.tile_width, *window_x_,
+        *window_y_, tables_.window_sum, *twiddle_y_, *order_y_, *own.coverage, *columns_);
     kernels_.transform_columns.Enqueue(queue_, ColumnsOf(tables_.tile_height), *columns_,
-                                       *twiddle_x_, *order_x_, *own.spectra);
+                                       tables_.tile_height, *twiddle_x_, *order_x_, *own.spectra);
     queue_.Finish();
   }
 
@@ -169,17 +173,18 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
     if (peaks.size() != settings_.tiles.size()) {
       throw std::invalid_argument("phase correlation: there must be one peak a tile");
     }
-    kernels_.transform_cross_power.Enqueue(
-        queue_, ColumnsOf(tables_.tile_width), *own_reference.spectra, *own_current.spectra,
-        *spectral_weight_, tables_.noise_power, *twiddle_y_, *order_y_, *columns_);
+    kernels_.transform_cross_power.Enqueue(queue_, ColumnsOf(tables_.tile_width),
+                                           *own_reference.spectra, *own_current.spectra,
+                                           tables_.tile_width, *spectral_weight_,
+                                           tables_.noise_power, *twiddle_y_, *order_y_, *columns_);
     kernels_.transform_columns.Enqueue(queue_, ColumnsOf(tables_.tile_height), *columns_,
-                                       *twiddle_x_, *order_x_, *tiles_);
+                                       tables_.tile_height, *twiddle_x_, *order_x_, *tiles_);
     const std::size_t group = peak_group_;
     kernels_.find_peak.Enqueue(
         queue_, {.global = {group * peaks.size(), 1, 1}, .local = {group, 1, 1}}, *tiles_,
-        *own_reference.coverage, *own_current.coverage, *records_,
-        LocalMemory{tables_.tile_height * sizeof(float)}, LocalMemory{group * sizeof(float)},
-        LocalMemory{group * sizeof(cl_int)});
+        tables_.tile_width, tables_.tile_height, tables_.peak_radius, *own_reference.coverage,
+        *own_current.coverage, *records_, LocalMemory{tables_.tile_height * sizeof(float)},
+        LocalMemory{group * sizeof(float)}, LocalMemory{group * sizeof(cl_int)});
     queue_.Read(*records_, host_records_.data(), host_records_.size() * sizeof(float));
     for (std::size_t i = 0; i < peaks.size(); ++i) {
       peaks[i] =
@@ -189,42 +194,46 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
 
  private:
   struct Kernels {
-    Kernel<GlobalMemory, cl_int, cl_int, cl_int, GlobalMemory, cl_int, GlobalMemory, GlobalMemory,
-           GlobalMemory, GlobalMemory>
+    Kernel<GlobalMemory, cl_int, cl_int, cl_int, GlobalMemory, cl_int, cl_int, cl_int, GlobalMemory,
+           GlobalMemory, GlobalMemory, GlobalMemory>
         sample;
-    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, GlobalMemory, cl_float, GlobalMemory,
+    Kernel<GlobalMemory, GlobalMemory, cl_int, GlobalMemory, GlobalMemory, cl_float, GlobalMemory,
            GlobalMemory, GlobalMemory, GlobalMemory>
         transform_samples;
-    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, GlobalMemory> transform_columns;
-    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, cl_float, GlobalMemory, GlobalMemory,
+    Kernel<GlobalMemory, GlobalMemory, cl_int, GlobalMemory, cl_float, GlobalMemory, GlobalMemory,
            GlobalMemory>
         transform_cross_power;
-    Kernel<GlobalMemory, GlobalMemory, GlobalMemory, GlobalMemory, LocalMemory, LocalMemory,
-           LocalMemory>
+    Kernel<GlobalMemory, cl_int, GlobalMemory, GlobalMemory, GlobalMemory> transform_columns;
+    Kernel<GlobalMemory, cl_int, cl_int, cl_int, GlobalMemory, GlobalMemory, GlobalMemory,
+           LocalMemory, LocalMemory, LocalMemory>
         find_peak;
   };
 
   int PeakSide() const { return 2 * tables_.peak_radius + 1; }
 
-  Kernels Compile() {
-    std::string source;
-    for (const std::string_view part : {kLanesCl, kTransformCl, kSampleTilesCl, kFindPeakCl}) {
-      source += part;
-    }
-    const auto define = [](const char* name, int value) {
-      return std::string("-D") + name + "=" + std::to_string(value) + " ";
-    };
-    const int batch = layout_.sample_whole_rows ? tables_.tile_width : layout_.lanes;
-    const Program program = context_->Compile(
-        source, define("W", tables_.tile_width) + define("H", tables_.tile_height) +
-                    define("V", layout_.lanes) + define("ROWS", layout_.sample_rows) +
-                    define("BATCH", batch) + define("GROUP", peak_group_) +
-                    define("RADIUS", tables_.peak_radius) + "-cl-mad-enable");
-    return {{program, "SampleTiles"},
-            {program, "TransformSamples"},
-            {program, "TransformColumns"},
-            {program, "TransformCrossPower"},
-            {program, "FindPeak"}};
+  Program CompileTileProgram() {
+    return context_->Compile(
+        std::string(kLanesCl) + std::string(kSampleTilesCl) + std::string(kFindPeakCl),
+        Define("V", layout_.lanes) + Define("ROWS", layout_.sample_rows) +
+            Define("BATCH", std::max(layout_.sample_batch, layout_.lanes)) +
+            Define("GROUP", peak_group_) + "-cl-mad-enable");
+  }
+
+  // One program a side, so that tiles of all shapes share them.
+  Program CompileTransform(int side) {
+    return context_->Compile(std::string(kLanesCl) + std::string(kTransformCl),
+                             Define("V", layout_.lanes) + Define("N", side) + "-cl-mad-enable");
+  }
+
+  Kernels MakeKernels() {
+    const Program tiles = CompileTileProgram();
+    const Program columns = CompileTransform(tables_.tile_height);
+    const Program rows = CompileTransform(tables_.tile_width);
+    return {{tiles, "SampleTiles"},
+            {columns, "TransformSamples"},
+            {columns, "TransformCrossPower"},
+            {rows, "TransformColumns"},
+            {tiles, "FindPeak"}};
   }
 
   // One work-item for each of the columns' groups, for all pairs of tiles.
@@ -285,7 +294,7 @@ PhaseCorrelationLayout PhaseCorrelationLayout::For(const Context& context) {
                    : native >= 8 ? 8
                                  : 4,
           .sample_rows = 8,
-          .sample_whole_rows = true,
+          .sample_batch = 128,
           .peak_group = 1};
 }
 

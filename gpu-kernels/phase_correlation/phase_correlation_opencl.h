@@ -14,8 +14,8 @@ struct PhaseCorrelationLayout {
   int lanes = 1;
   // Rows of a tile that one work-item samples: 1, 2, 4, 8 or 16.
   int sample_rows = 1;
-  // Whether it works on a whole row at a time, or on as many samples as there are lanes.
-  bool sample_whole_rows = false;
+  // Samples that it works on together, a power of two; at least `lanes` are.
+  int sample_batch = 1;
   // Work-items that look for the peak of one tile together: a power of two, 1 to 256.
   int peak_group = 64;
 

@@ -12,13 +12,14 @@ typedef union {
 
 // A row of samples: where the four source pixels of each lie, its place between them, whether it is
 // seen. The homogeneous coordinates along the row are origin + step * x.
-INLINE void LocateSamples(float3 origin, float3 step, int first, int width, int height, int stride,
+INLINE void LocateSamples(float3 origin, float3 step, int first, int count, int width, int height,
+                          int stride,
                    IntLanes* offsets, Lanes* fraction_x, Lanes* fraction_y, Lanes* seen) {
   const float last_x = (float)(width - 1);
   const float last_y = (float)(height - 1);
   const int last_left = max(width - 2, 0);
   const int last_top = max(height - 2, 0);
-  for (int i = 0; i < BATCH / V; ++i) {
+  for (int i = 0; i < count / V; ++i) {
     const Lanes x = TO_FLOAT(LaneNumbers() + (first + i * V));
     const Lanes w = origin.z + step.z * x;
     const Lanes inverse = 1.0f / w;
@@ -37,12 +38,13 @@ INLINE void LocateSamples(float3 origin, float3 step, int first, int width, int 
 }
 
 // Samples all tiles bilinearly; UNSEEN where the picture has no pixel. One work-item does ROWS rows
-// of one tile. `from_tile` holds, for each tile, the 9 elements of picture_from_tile. `row_sums`
-// takes, for each tile, H window-weighted sums of its rows' grey levels, then H of their seen
-// samples. Tiles past `tile_count` are not seen at all.
+// of one tile: global size tile_height / ROWS x 2 * pairs. `from_tile` holds, for each tile, the 9
+// elements of picture_from_tile. `row_sums` takes, for each tile, the window-weighted sums of the
+// grey levels of its rows, then those of 1 for each seen sample. Tiles past `tile_count` are not
+// seen at all.
 __kernel void SampleTiles(__global const uchar* restrict picture, int width, int height, int stride,
-                          __global const float* restrict from_tile, int tile_count,
-                          __global const float* restrict window_x,
+                          __global const float* restrict from_tile, int tile_count, int tile_width,
+                          int tile_height, __global const float* restrict window_x,
                           __global const float* restrict window_y,
                           __global float* restrict samples, __global float* restrict row_sums) {
   const int tile = get_global_id(1);
@@ -58,20 +60,23 @@ __kernel void SampleTiles(__global const uchar* restrict picture, int width, int
   PixelPairs upper;
   PixelPairs lower;
   for (int y = first_row; y < first_row + ROWS; ++y) {
-    __global float* out = samples + tile * SAMPLES + y * W;
+    __global float* out = samples + (tile * tile_height + y) * tile_width;
     const float3 origin = (float3)(m[1], m[4], m[7]) * (float)y + (float3)(m[2], m[5], m[8]);
     Lanes value_sum = 0.0f;
     Lanes seen_sum = 0.0f;
-    for (int x = 0; x < W; x += BATCH) {
-      LocateSamples(origin, step, x, width, height, stride, offsets.lanes, fraction_x, fraction_y,
-                    seen);
-#pragma unroll 8
-      for (int i = 0; i < BATCH; ++i) {
-        __global const uchar* pixel = picture + offsets.single[i];
-        upper.single[i] = as_ushort(vload2(0, pixel));
-        lower.single[i] = as_ushort(vload2(0, pixel + to_next_row));
+    for (int x = 0; x < tile_width; x += BATCH) {
+      const int count = min(BATCH, tile_width - x);
+      LocateSamples(origin, step, x, count, width, height, stride, offsets.lanes, fraction_x,
+                    fraction_y, seen);
+      for (int i = 0; i < count; i += V) {
+#pragma unroll
+        for (int lane = i; lane < i + V; ++lane) {
+          __global const uchar* pixel = picture + offsets.single[lane];
+          upper.single[lane] = as_ushort(vload2(0, pixel));
+          lower.single[lane] = as_ushort(vload2(0, pixel + to_next_row));
+        }
       }
-      for (int i = 0; i < BATCH / V; ++i) {
+      for (int i = 0; i < count / V; ++i) {
         const IntLanes up = SHORTS_TO_INT(upper.lanes[i]);
         const IntLanes low = SHORTS_TO_INT(lower.lanes[i]);
         const Lanes a = TO_FLOAT(up & 0xff);
@@ -86,7 +91,7 @@ __kernel void SampleTiles(__global const uchar* restrict picture, int width, int
         STORE(select((Lanes)(UNSEEN), value, is_seen > 0.0f), out + x + i * V);
       }
     }
-    row_sums[2 * H * tile + y] = window_y[y] * SumOfLanes(value_sum);
-    row_sums[2 * H * tile + H + y] = window_y[y] * SumOfLanes(seen_sum);
+    row_sums[2 * tile_height * tile + y] = window_y[y] * SumOfLanes(value_sum);
+    row_sums[2 * tile_height * tile + tile_height + y] = window_y[y] * SumOfLanes(seen_sum);
   }
 }

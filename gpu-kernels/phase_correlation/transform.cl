@@ -5,8 +5,9 @@
 // order. The columns' transform decimates in frequency, in place: a block of values is split by radix
 // 8 or 4 until nothing is left to split.
 //
-// Tables for a side of n: twiddle[k] = exp(-2 pi i k / n), and order[k], where the value of
-// frequency k lies after the last split.
+// `columns`, a power of two, is how many there are; all kernels have the global size columns / V x
+// pairs of tiles. Tables: twiddle[k] = exp(-2 pi i k / N), and order[k], where the value of frequency
+// k lies after the last split.
 
 // Forward transform of 4 values, natural order.
 INLINE void Transform4(Lanes* re, Lanes* im) {
@@ -42,12 +43,12 @@ INLINE void Transform8(Lanes* re, Lanes* im) {
 // Splits every block of `block` values into RADIX blocks, of which block m takes the frequencies
 // RADIX * q + m.
 #define DEFINE_SPLIT(RADIX)                                                                      \
-  INLINE void SplitBy##RADIX(Lanes* re, Lanes* im, __global const float2* twiddle, int side, int block) { \
+  INLINE void SplitBy##RADIX(Lanes* re, Lanes* im, __global const float2* twiddle, int block) { \
     const int step = block / RADIX;                                                              \
     for (int j = 0; j < step; ++j) {                                                             \
       float2 turn[RADIX];                                                                        \
-      for (int m = 1; m < RADIX; ++m) turn[m] = twiddle[m * j * (side / block)];                 \
-      for (int at = j; at < side; at += block) {                                                 \
+      for (int m = 1; m < RADIX; ++m) turn[m] = twiddle[m * j * (N / block)];                 \
+      for (int at = j; at < N; at += block) {                                                 \
         Lanes r[RADIX], i[RADIX];                                                                \
         _Pragma("unroll") for (int m = 0; m < RADIX; ++m) {                                      \
           r[m] = re[at + m * step], i[m] = im[at + m * step];                                    \
@@ -66,26 +67,26 @@ DEFINE_SPLIT(8)
 
 // The last split, which needs no twiddles.
 #define DEFINE_FINISH(RADIX)                                             \
-  INLINE void FinishBy##RADIX(Lanes* re, Lanes* im, int side) {                 \
-    for (int at = 0; at < side; at += RADIX) Transform##RADIX(re + at, im + at); \
+  INLINE void FinishBy##RADIX(Lanes* re, Lanes* im) {                 \
+    for (int at = 0; at < N; at += RADIX) Transform##RADIX(re + at, im + at); \
   }
 DEFINE_FINISH(4)
 DEFINE_FINISH(8)
 
 // In place; frequency k comes to lie at order[k] (PhaseCorrelationOpenCl makes that table).
-INLINE void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle, int side) {
-  int block = side;
+INLINE void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle) {
+  int block = N;
   for (; block > 8; block /= block == 16 ? 4 : 8) {
     if (block == 16) {
-      SplitBy4(re, im, twiddle, side, block);
+      SplitBy4(re, im, twiddle, block);
     } else {
-      SplitBy8(re, im, twiddle, side, block);
+      SplitBy8(re, im, twiddle, block);
     }
   }
   if (block == 8) {
-    FinishBy8(re, im, side);
+    FinishBy8(re, im);
   } else {
-    FinishBy4(re, im, side);
+    FinishBy4(re, im);
   }
 }
 
@@ -108,11 +109,11 @@ INLINE void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle,
             a.sf, b.sf)
 #endif
 
-// Writes V columns as V rows of `side` values. A block of V x V is transposed in registers: each
+// Writes V columns as V rows of N values. A block of V x V is transposed in registers: each
 // round interleaves vector i with vector i + V / 2, which turns the bits of (vector, lane) by one.
-INLINE void StoreTransposed(const Lanes* values, __global const int* order, int side,
-                     __global float* restrict out) {
-  for (int k = 0; k < side; k += V) {
+INLINE void StoreTransposed(const Lanes* values, __global const int* order,
+                            __global float* restrict out) {
+  for (int k = 0; k < N; k += V) {
 #if V == 1
     out[k] = values[order[k]];
 #else
@@ -130,21 +131,31 @@ INLINE void StoreTransposed(const Lanes* values, __global const int* order, int 
       for (int i = 0; i < V; ++i) block[i] = turned[i];
     }
 #pragma unroll
-    for (int i = 0; i < V; ++i) STORE(block[i], out + i * side + k);
+    for (int i = 0; i < V; ++i) STORE(block[i], out + i * N + k);
 #endif
   }
 }
 
-INLINE float SumOfRow(__global const float* row, int count) {
+INLINE float SumOf(__global const float* values) {
   Lanes sum = 0.0f;
-  for (int i = 0; i < count; i += V) sum += LOAD(row + i);
+  for (int i = 0; i < N; i += V) sum += LOAD(values + i);
   return SumOfLanes(sum);
 }
 
+// Transforms the columns x to x + V - 1 of a pair of tiles and writes them as rows.
+INLINE void TransformAndStore(Lanes* re, Lanes* im, __global const float2* twiddle,
+                              __global const int* order, int pair, int x, int plane,
+                              __global float* out) {
+  TransformLanes(re, im, twiddle);
+  __global float* destination = out + 2 * plane * pair + x * N;
+  StoreTransposed(re, order, destination);
+  StoreTransposed(im, order, destination + plane);
+}
+
 // First step of a picture's transform: takes the window-weighted mean off the samples, applies the
-// window, transforms columns. Global size: W / V, pairs. Also notes each tile's coverage.
+// window, transforms columns. Also notes each tile's coverage.
 __kernel void TransformSamples(__global const float* restrict samples,
-                               __global const float* restrict row_sums,
+                               __global const float* restrict row_sums, int columns,
                                __global const float* restrict window_x,
                                __global const float* restrict window_y, float window_sum,
                                __global const float2* restrict twiddle,
@@ -152,43 +163,38 @@ __kernel void TransformSamples(__global const float* restrict samples,
                                __global float* restrict out) {
   const int x = get_global_id(0) * V;
   const int pair = get_global_id(1);
+  const int plane = N * columns;
   const Lanes weight_x = LOAD(window_x + x);
-  Lanes parts[2][H];
+  Lanes parts[2][N];
   for (int part = 0; part < 2; ++part) {
     const int tile = 2 * pair + part;
-    const float value_sum = SumOfRow(row_sums + 2 * H * tile, H);
-    const float seen_sum = SumOfRow(row_sums + 2 * H * tile + H, H);
+    const float value_sum = SumOf(row_sums + 2 * N * tile);
+    const float seen_sum = SumOf(row_sums + 2 * N * tile + N);
     const float mean = seen_sum > 0.0f ? value_sum / seen_sum : 0.0f;
     if (x == 0) coverage[tile] = fmin(seen_sum / window_sum, 1.0f);
-    __global const float* column = samples + tile * SAMPLES + x;
-    for (int y = 0; y < H; ++y) {
-      const Lanes value = LOAD(column + y * W);
+    __global const float* column = samples + tile * plane + x;
+    for (int y = 0; y < N; ++y) {
+      const Lanes value = LOAD(column + y * columns);
       parts[part][y] = select((Lanes)(0.0f), weight_x * window_y[y] * (value - mean), value >= 0.0f);
     }
   }
-  TransformLanes(parts[0], parts[1], twiddle, H);
-  __global float* destination = out + 2 * SAMPLES * pair + x * H;
-  StoreTransposed(parts[0], order, H, destination);
-  StoreTransposed(parts[1], order, H, destination + SAMPLES);
+  TransformAndStore(parts[0], parts[1], twiddle, order, pair, x, plane, out);
 }
 
-// Second step of a transform or of an inverse one: `in` holds W rows of H values. Global size: H / V,
-// pairs.
-__kernel void TransformColumns(__global const float* restrict in,
+// Second step of a transform or of an inverse one.
+__kernel void TransformColumns(__global const float* restrict in, int columns,
                                __global const float2* restrict twiddle,
                                __global const int* restrict order, __global float* restrict out) {
   const int x = get_global_id(0) * V;
   const int pair = get_global_id(1);
-  __global const float* column = in + 2 * SAMPLES * pair + x;
-  Lanes re[W], im[W];
-  for (int y = 0; y < W; ++y) {
-    re[y] = LOAD(column + y * H);
-    im[y] = LOAD(column + SAMPLES + y * H);
+  const int plane = N * columns;
+  __global const float* column = in + 2 * plane * pair + x;
+  Lanes re[N], im[N];
+  for (int y = 0; y < N; ++y) {
+    re[y] = LOAD(column + y * columns);
+    im[y] = LOAD(column + plane + y * columns);
   }
-  TransformLanes(re, im, twiddle, W);
-  __global float* destination = out + 2 * SAMPLES * pair + x * W;
-  StoreTransposed(re, order, W, destination);
-  StoreTransposed(im, order, W, destination + SAMPLES);
+  TransformAndStore(re, im, twiddle, order, pair, x, plane, out);
 }
 
 typedef struct {
@@ -197,17 +203,17 @@ typedef struct {
 } Complex;
 
 // Values at x to x + V - 1 of a spectrum's row.
-INLINE Complex LoadBins(__global const float* re, int x) {
-  return (Complex){LOAD(re + x), LOAD(re + SAMPLES + x)};
+INLINE Complex LoadBins(__global const float* row, int x, int plane) {
+  return (Complex){LOAD(row + x), LOAD(row + plane + x)};
 }
 
 // Values at -x to -(x + V - 1) of a row of one plane; columns continue periodically.
-INLINE Lanes LoadMirrored(__global const float* row, int x) {
-  const float first = row[(W - x) & (W - 1)];
+INLINE Lanes LoadMirrored(__global const float* row, int x, int columns) {
+  const float first = row[(columns - x) & (columns - 1)];
 #if V == 1
   return first;
 #else
-  const Lanes rest = LOAD(row + W - x - V);
+  const Lanes rest = LOAD(row + columns - x - V);
 #if V == 2
   return (float2)(first, rest.s1);
 #elif V == 4
@@ -220,42 +226,44 @@ INLINE Lanes LoadMirrored(__global const float* row, int x) {
 #endif
 }
 
-INLINE Complex LoadMirroredBins(__global const float* re, int x) {
-  return (Complex){LoadMirrored(re, x), LoadMirrored(re + SAMPLES, x)};
+INLINE Complex LoadMirroredBins(__global const float* row, int x, int columns, int plane) {
+  return (Complex){LoadMirrored(row, x, columns), LoadMirrored(row + plane, x, columns)};
 }
 
 // Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak of
 // current(x + d) = reference(x) at d), weighted. `noise_power` damps what does not rise above it.
-INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight, float noise_power) {
+INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight,
+                                    float noise_power) {
   const Lanes re = current.re * reference.re + current.im * reference.im;
   const Lanes im = current.im * reference.re - current.re * reference.im;
   const Lanes scale = weight / (sqrt(re * re + im * im) + noise_power);
   return (Complex){scale * re, scale * im};
 }
 
-// First step of the inverse transform of the cross power of two pictures. Global size: W / V, pairs.
+// First step of the inverse transform of the cross power of two pictures.
 //
 // With z the transform of a + i b, twice the transform of a is z(k) + conj(z(-k)), that of b is
 // (z(k) - conj(z(-k))) / i; the factors are made up for by four times the noise power. An inverse
 // transform is a forward one between swapped real and imaginary parts: of c_b + i c_a, where c_a
 // and c_b are the cross powers, so that the surfaces of a and b come out as real and imaginary part.
 __kernel void TransformCrossPower(__global const float* restrict reference,
-                                  __global const float* restrict current,
+                                  __global const float* restrict current, int columns,
                                   __global const float* restrict weight, float noise_power,
                                   __global const float2* restrict twiddle,
                                   __global const int* restrict order, __global float* restrict out) {
   const int x = get_global_id(0) * V;
   const int pair = get_global_id(1);
-  reference += 2 * SAMPLES * pair;
-  current += 2 * SAMPLES * pair;
-  Lanes re[H], im[H];
-  for (int y = 0; y < H; ++y) {
-    const int row = y * W;
-    const int mirrored_row = ((H - y) & (H - 1)) * W;
-    const Complex r = LoadBins(reference + row, x);
-    const Complex s = LoadMirroredBins(reference + mirrored_row, x);
-    const Complex c = LoadBins(current + row, x);
-    const Complex d = LoadMirroredBins(current + mirrored_row, x);
+  const int plane = N * columns;
+  reference += 2 * plane * pair;
+  current += 2 * plane * pair;
+  Lanes re[N], im[N];
+  for (int y = 0; y < N; ++y) {
+    const int row = y * columns;
+    const int mirrored_row = ((N - y) & (N - 1)) * columns;
+    const Complex r = LoadBins(reference + row, x, plane);
+    const Complex s = LoadMirroredBins(reference + mirrored_row, x, columns, plane);
+    const Complex c = LoadBins(current + row, x, plane);
+    const Complex d = LoadMirroredBins(current + mirrored_row, x, columns, plane);
     const Lanes w = LOAD(weight + row + x);
     const Complex first =
         NormalisedCrossPower((Complex){r.re + s.re, r.im - s.im},
@@ -266,8 +274,5 @@ __kernel void TransformCrossPower(__global const float* restrict reference,
     re[y] = second.im + first.re;
     im[y] = second.re - first.im;
   }
-  TransformLanes(re, im, twiddle, H);
-  __global float* destination = out + 2 * SAMPLES * pair + x * H;
-  StoreTransposed(re, order, H, destination);
-  StoreTransposed(im, order, H, destination + SAMPLES);
+  TransformAndStore(re, im, twiddle, order, pair, x, plane, out);
 }

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu-kernels/decimate/decimate_cpu.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
+#include "gpu-kernels/decimate/decimate_check.h"
 #include "gpu-kernels/multiversion.h"
 
 namespace windhover {
 namespace {
-
-constexpr int kMaxFactor = 16;
 
 // sums[x] (+)= row[x]. 16 rows of 255 fit 16 bits.
 WINDHOVER_MULTIVERSION
@@ -56,15 +52,7 @@ void BlockMeansOfRow(const std::uint16_t* sums, int factor, int width, std::uint
 class DecimateCpu : public Decimate {
  public:
   void Run(const GrayImage& source, int factor, GrayImage& destination) override {
-    if (factor < 1 || factor > kMaxFactor) {
-      throw std::invalid_argument("decimation by " + std::to_string(factor) +
-                                  ": the factor must be 1 to 16");
-    }
-    if (source.empty() || destination.empty() || destination.width() != source.width() / factor ||
-        destination.height() != source.height() / factor) {
-      throw std::invalid_argument("decimation: the destination must have the source's size over " +
-                                  std::to_string(factor));
-    }
+    CheckDecimate(source, factor, destination);
     const auto in = source.Read();
     const auto out = destination.Write();
     const int used_width = out.width() * factor;

@@ -7,6 +7,7 @@ namespace windhover {
 
 // The operators' .cl files, word for word, embedded by deploy/cmake/EmbedKernels.cmake. Each begins
 // with a #line that makes compiler messages name the file.
+extern const std::string_view kBilinearCl;
 extern const std::string_view kDecimateCl;
 extern const std::string_view kDifferenceThresholdCl;
 extern const std::string_view kFindPeakCl;

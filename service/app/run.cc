@@ -118,6 +118,7 @@ class Job {
   Clock::time_point stage_start_ = Clock::now();
   int other_subscribers_ = 0;
   bool subscriber_ready_ = false;
+  bool subscriber_ended_ = false;
   std::string device_;
   Samples published_;
   Samples received_;
@@ -256,13 +257,16 @@ void Job::OnLine(std::string_view line) {
   }
 }
 
+// It ends with the stream on the bus; the encoder may still have work then.
 void Job::OnSubscriberExit(int status) {
+  subscriber_ended_ = true;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != kExitOk) {
-    Fail("The subscriber has failed; see above");
-  } else if (stage_ != Stage::kEnding) {
-    Fail("The subscriber has ended before the video");
+    Fail("The subscriber has failed");
+  } else if (stage_ == Stage::kMatching) {
+    Fail("The subscriber has ended before the first frame");
+  } else if (stage_ == Stage::kEnding) {
+    loop_.Quit();
   }
-  loop_.Quit();
 }
 
 void Job::PlayOnceMatched() {
@@ -286,6 +290,7 @@ void Job::EndOfVideo() {
   stage_start_ = Clock::now();
   // Ends the stream on the bus, and with it the subscriber.
   pipeline_->SetState(GST_STATE_NULL);
+  if (subscriber_ended_) loop_.Quit();
 }
 
 void Job::OnInterrupt() {

@@ -222,9 +222,12 @@ GstPadProbeReturn Pipeline::OnFrameIn(GstPad* pad, GstBuffer* buffer) {
     gst_pad_send_event(pad, gst_event_new_eos());
     return GST_PAD_PROBE_DROP;
   }
-  if (frames_in_++ == 0 && length_ns_ == 0) {
+  if (frames_in_++ == 0) {
+    first_frame_ = std::chrono::steady_clock::now();
     gint64 length = 0;
-    if (gst_pad_peer_query_duration(pad, GST_FORMAT_TIME, &length)) length_ns_ = length;
+    if (length_ns_ == 0 && gst_pad_peer_query_duration(pad, GST_FORMAT_TIME, &length)) {
+      length_ns_ = length;
+    }
   }
   SeeTime(pad, buffer);
   return GST_PAD_PROBE_OK;

@@ -4,6 +4,7 @@
 #include <gst/gst.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -47,6 +48,8 @@ class Pipeline {
   // Any thread.
   std::uint64_t frames_in() const { return frames_in_; }
   std::uint64_t frames_out() const { return frames_out_; }
+  // When the first frame came in; the epoch of the clock before that.
+  std::chrono::steady_clock::time_point first_frame() const { return first_frame_; }
   // Time of the source up to which frames have come in, of all its streams; and its length, 0 where
   // it is not known.
   std::int64_t reached_ns() const { return reached_ns_; }
@@ -75,6 +78,7 @@ class Pipeline {
   std::vector<GstElement*> ours_;
   std::atomic<std::uint64_t> frames_in_ = 0;
   std::atomic<std::uint64_t> frames_out_ = 0;
+  std::atomic<std::chrono::steady_clock::time_point> first_frame_{};
   std::atomic<std::int64_t> reached_ns_ = 0;
   std::atomic<std::int64_t> length_ns_ = 0;
   std::atomic<bool> end_early_ = false;

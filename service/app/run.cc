@@ -54,6 +54,19 @@ class GlibLoop {
   GMainLoop* loop_;
 };
 
+// What an error or a warning says.
+std::string Text(GstMessage* message, void (*parse)(GstMessage*, GError**, char**)) {
+  GError* error = nullptr;
+  parse(message, &error, nullptr);
+  std::string text = error->message;
+  if (g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_TYPE_NOT_FOUND) ||
+      g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_WRONG_TYPE)) {
+    text = "not a video: " + text;
+  }
+  g_error_free(error);
+  return text;
+}
+
 // Samples of each topic and the detections in them.
 struct Samples {
   std::uint64_t homographies = 0;
@@ -99,7 +112,8 @@ class Job {
   std::string CutOff() const;
   int Finish();
   std::string Summary() const;
-  double FramesPerSecond(Clock::duration duration) const;
+  // From the first frame on.
+  double FramesPerSecond(Clock::time_point until) const;
 
   const Source& source_;
   std::vector<OptionSetting> settings_;
@@ -123,7 +137,7 @@ class Job {
   Samples published_;
   Samples received_;
   std::uint64_t failed_ = 0;
-  Clock::duration duration_{};
+  Clock::time_point end_of_video_;
   std::string error_;
   bool interrupted_ = false;
   Clock::time_point interrupted_at_;
@@ -201,23 +215,16 @@ int Job::Run() {
 }
 
 void Job::OnMessage(GstMessage* message) {
-  const auto text = [&](auto parse) {
-    GError* error = nullptr;
-    parse(message, &error, nullptr);
-    const std::string result = error->message;
-    g_error_free(error);
-    return result;
-  };
   switch (GST_MESSAGE_TYPE(message)) {
     case GST_MESSAGE_ERROR: {
       const std::uint64_t frames = pipeline_->frames_in();
-      Fail(fmt::format("{}: {}{}", source_.name, text(gst_message_parse_error),
+      Fail(fmt::format("{}: {}{}", source_.name, Text(message, gst_message_parse_error),
                        frames > 0 ? fmt::format(" (after {} frames)", frames) : ""));
       break;
     }
     case GST_MESSAGE_WARNING:
       progress_.Clear();
-      Log()->warn("{}", text(gst_message_parse_warning));
+      Log()->warn("{}", Text(message, gst_message_parse_warning));
       break;
     case GST_MESSAGE_EOS:
       EndOfVideo();
@@ -281,13 +288,13 @@ void Job::PlayOnceMatched() {
 
 void Job::EndOfVideo() {
   if (stage_ != Stage::kFlowing) return;
-  duration_ = Clock::now() - stage_start_;
+  end_of_video_ = Clock::now();
   published_ = {pipeline_->Published("published-homographies"),
                 pipeline_->Published("published-detections"),
                 pipeline_->Published("published-boxes")};
   failed_ = pipeline_->Published("failed-samples");
   stage_ = Stage::kEnding;
-  stage_start_ = Clock::now();
+  stage_start_ = end_of_video_;
   // Ends the stream on the bus, and with it the subscriber.
   pipeline_->SetState(GST_STATE_NULL);
   if (subscriber_ended_) loop_.Quit();
@@ -312,7 +319,7 @@ void Job::OnTick() {
       share = fmt::format(", {:.0f} %", std::min(100.0, 100.0 * pipeline_->reached_ns() / length));
     }
     progress_.Show(fmt::format("{}: {} frames{}, {:.1f} frames/s", source_.name,
-                               pipeline_->frames_out(), share, FramesPerSecond(now - stage_start_)),
+                               pipeline_->frames_out(), share, FramesPerSecond(now)),
                    now);
   } else if (now - stage_start_ > kLongestWait) {
     Fail(stage_ == Stage::kMatching ? "Publisher and subscriber do not find each other on the bus"
@@ -325,8 +332,8 @@ void Job::Fail(const std::string& text) {
   loop_.Quit();
 }
 
-double Job::FramesPerSecond(Clock::duration duration) const {
-  const double elapsed = std::chrono::duration<double>(duration).count();
+double Job::FramesPerSecond(Clock::time_point until) const {
+  const double elapsed = std::chrono::duration<double>(until - pipeline_->first_frame()).count();
   return elapsed > 0.0 ? static_cast<double>(pipeline_->frames_out()) / elapsed : 0.0;
 }
 
@@ -347,10 +354,16 @@ std::string Job::Loss() const {
 }
 
 std::string Job::CutOff() const {
-  if (interrupted_ || pipeline_->length_ns() - pipeline_->reached_ns() < kCutOffNs) return "";
-  return fmt::format("is cut off: it ends after {:.2f} s of {:.2f} s, {} frames",
-                     1e-9 * pipeline_->reached_ns(), 1e-9 * pipeline_->length_ns(),
-                     pipeline_->frames_in());
+  const std::int64_t length = pipeline_->length_ns();
+  const std::int64_t reached = pipeline_->reached_ns();
+  if (interrupted_) return "";
+  if (source_.missing_bytes > 0) {
+    return fmt::format("is cut off: {} bytes are missing; it ends after {:.2f} s, {} frames",
+                       source_.missing_bytes, 1e-9 * reached, pipeline_->frames_in());
+  }
+  if (length - reached < kCutOffNs) return "";
+  return fmt::format("is cut off: it ends after {:.2f} s of {:.2f} s, {} frames", 1e-9 * reached,
+                     1e-9 * length, pipeline_->frames_in());
 }
 
 int Job::Finish() {
@@ -369,6 +382,7 @@ int Job::Finish() {
     if (video_path_) video_path_->Complete();
   }
   fmt::print("{}\n", Summary());
+  std::fflush(stdout);
   if (!loss.empty()) throw std::runtime_error("Samples were lost: " + loss);
   if (const std::string cut_off = CutOff(); !cut_off.empty()) {
     throw std::runtime_error(source_.name + " " + cut_off);
@@ -386,7 +400,7 @@ std::string Job::Summary() const {
       "{} received; {} boxes; {:.1f} frames/s; {}",
       source_.name, pipeline_->frames_in(), pipeline_->frames_out(), published_.homographies,
       received_.homographies, published_.detections, received_.detections, received_.boxes,
-      FramesPerSecond(duration_), device);
+      FramesPerSecond(end_of_video_), device);
 }
 
 }  // namespace

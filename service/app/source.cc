@@ -5,12 +5,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
+#include <string_view>
 
 namespace windhover {
 namespace {
@@ -97,6 +98,20 @@ Source FindSequence(const std::string& text) {
   return source;
 }
 
+// By the size in the first RIFF chunk's header; 0 where there is no such header.
+std::int64_t MissingBytesOfAvi(const fs::path& path) {
+  std::array<unsigned char, 12> header{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(header.data()), header.size());
+  const std::string_view bytes(reinterpret_cast<const char*>(header.data()), header.size());
+  if (!file || bytes.substr(0, 4) != "RIFF" || bytes.substr(8) != "AVI ") return 0;
+  const std::int64_t size =
+      header[4] | header[5] << 8 | header[6] << 16 | static_cast<std::int64_t>(header[7]) << 24;
+  // Writers that do not go back to fill it in leave this.
+  if (size == 0xFFFFFFFF) return 0;
+  return std::max<std::int64_t>(0, size + 8 - static_cast<std::int64_t>(fs::file_size(path)));
+}
+
 Source FindFile(const std::string& name, const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -109,6 +124,7 @@ Source FindFile(const std::string& name, const fs::path& path) {
   Source source;
   source.name = name;
   source.stem = path.stem().string();
+  if (fs::is_regular_file(status)) source.missing_bytes = MissingBytesOfAvi(path);
   char* uri = g_filename_to_uri(fs::absolute(path).c_str(), nullptr, nullptr);
   if (uri == nullptr) throw SourceError(fmt::format("{} has no URI", name));
   source.uri = uri;

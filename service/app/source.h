@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -17,6 +18,8 @@ struct Source {
   std::string name;  // as the user wrote it
   std::string stem;  // the last part of the name without its extension, for stream names
   std::string uri;   // empty for a sequence
+  // Bytes that an AVI file lacks by its own header; its players take the rest for the whole.
+  std::int64_t missing_bytes = 0;
 
   // Of a sequence: printf pattern of the pictures' paths by their number from 1, their number,
   // their rate and their GStreamer media type.

@@ -2,11 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <opencv2/core/utils/logger.hpp>
 
 #include "replay/app/commands.h"
 #include "replay/app/interrupt.h"
 
 int main(int argc, char** argv) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_ERROR);
   CLI::App app("Flights with exact truth, scores and benchmarks for Windhover", "windhover-replay");
   app.set_version_flag("--version", "windhover-replay " WINDHOVER_VERSION);
   app.require_subcommand(1);

@@ -37,6 +37,7 @@ Terrain::Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Ve
       colours_(static_cast<std::size_t>(width_) * height_),
       heights_(colours_.size()),
       highest_(static_cast<std::size_t>(blocks_x_) * blocks_y_),
+      highest_around_(highest_.size()),
       highest_near_(highest_.size()) {
   Paint(scene, threads);
   FindHighest();
@@ -70,12 +71,14 @@ void Terrain::FindHighest() {
   const int reach = Ceiling(highest / (texel_m_ * kBlock)) + 1;
   for (int y = 0; y < blocks_y_; ++y) {
     for (int x = 0; x < blocks_x_; ++x) {
+      float& around = highest_around_[static_cast<std::size_t>(y) * blocks_x_ + x];
       float& near = highest_near_[static_cast<std::size_t>(y) * blocks_x_ + x];
       for (int v = std::max(0, y - reach); v <= std::min(blocks_y_ - 1, y + reach); ++v) {
         for (int u = std::max(0, x - reach); u <= std::min(blocks_x_ - 1, x + reach); ++u) {
           // What is lower than it is far away cannot be in the way.
           const float other = highest_[static_cast<std::size_t>(v) * blocks_x_ + u];
           const int apart = std::max(std::abs(u - x), std::abs(v - y)) - 1;
+          if (apart <= 0) around = std::max(around, other);
           if (other >= static_cast<float>(apart * kBlock * texel_m_)) near = std::max(near, other);
         }
       }

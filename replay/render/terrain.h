@@ -21,7 +21,7 @@ class Terrain {
   }
 
   // Side of the blocks of highest_near(), texels.
-  static constexpr int kBlock = 16;
+  static constexpr int kBlock = 8;
 
   Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
           double texel_m, int threads);
@@ -39,6 +39,10 @@ class Terrain {
   float highest_near(int x, int y) const {
     return highest_near_[static_cast<std::size_t>(y / kBlock) * blocks_x_ + x / kBlock];
   }
+  // The greatest height, m, within kBlock texels of the texel at least.
+  float highest_around(int x, int y) const {
+    return highest_around_[static_cast<std::size_t>(y / kBlock) * blocks_x_ + x / kBlock];
+  }
   // Share of the sun at a spot of the map, 0 to 1; 1 outside.
   float SunAt(const Eigen::Vector2d& spot) const;
 
@@ -55,8 +59,10 @@ class Terrain {
   int blocks_y_ = 0;
   std::vector<std::uint32_t> colours_;
   std::vector<Height> heights_;
-  std::vector<float> highest_;       // a block
-  std::vector<float> highest_near_;  // a block and its neighbours
+  // Greatest heights of each block, of it with its eight neighbours, and of all that can hide it.
+  std::vector<float> highest_;
+  std::vector<float> highest_around_;
+  std::vector<float> highest_near_;
 };
 
 }  // namespace windhover::replay

@@ -36,23 +36,35 @@ class RayCaster {
     // A metre up along the ray.
     const float up_x = (camera_x_ - x) / altitude_;
     const float up_y = (camera_y_ - y) / altitude_;
-    const float way = near * std::max(std::abs(up_x), std::abs(up_y));
-    const int steps = static_cast<int>(way) + 1;
-    const float drop = near / static_cast<float>(steps);
+    const float slope = std::max(std::abs(up_x), std::abs(up_y));
+    const float texel_drop = 1 / std::max(slope, 1e-4F);  // height lost while moving one texel
     float above = near;
-    for (int i = 0; i <= steps; ++i) {
-      const float z = near - static_cast<float>(i) * drop;
-      if (HeightAt(x + z * up_x, y + z * up_y) >= z) return Refine(x, y, up_x, up_y, z, above);
+    for (float z = near; z > 0;) {
+      const float u = x + z * up_x;
+      const float v = y + z * up_y;
+      const float around = terrain_.highest_around(Column(u), Row(v));
+      if (z > around) {
+        // Nothing within a block is as high: drop to where there may be something.
+        above = z;
+        z -= std::min(std::max(z - around, texel_drop), Terrain::kBlock * texel_drop);
+        continue;
+      }
+      if (HeightAt(u, v) >= z) return Refine(x, y, up_x, up_y, z, above);
       above = z;
+      z -= texel_drop;
     }
-    return {x, y, 0, false, false};
+    return Refine(x, y, up_x, up_y, 0, above);
   }
 
  private:
   Terrain::Height RawAt(float x, float y) const {
-    const auto column = std::clamp(static_cast<int>(x + 0.5F), 0, terrain_.width() - 1);
-    const auto row = std::clamp(static_cast<int>(y + 0.5F), 0, terrain_.height() - 1);
-    return terrain_.heights()[static_cast<std::size_t>(row) * terrain_.width() + column];
+    return terrain_.heights()[static_cast<std::size_t>(Row(y)) * terrain_.width() + Column(x)];
+  }
+  int Column(float x) const {
+    return std::clamp(static_cast<int>(x + 0.5F), 0, terrain_.width() - 1);
+  }
+  int Row(float y) const {
+    return std::clamp(static_cast<int>(y + 0.5F), 0, terrain_.height() - 1);
   }
   float HeightAt(float x, float y) const { return Terrain::HeightMetres(RawAt(x, y)); }
 

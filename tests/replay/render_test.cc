@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <future>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "replay/render/fill.h"
+#include "replay/render/portable_math.h"
+#include "replay/render/renderer.h"
+
+namespace windhover::replay {
+namespace {
+
+// Small, so that the test is quick; the world, traffic and camera are those of the real flight.
+FlightPlan SmallPlan() {
+  FlightPlan plan = FindFlightPlan("flight");
+  plan.width = 320;
+  plan.height = 240;
+  plan.frames = 24;
+  return plan;
+}
+
+const Renderer& SmallFlight() {
+  static const Renderer renderer(SmallPlan(), 2);
+  return renderer;
+}
+
+cv::Mat Luma(const cv::Mat& frame) {
+  cv::Mat luma;
+  cv::cvtColor(frame, luma, cv::COLOR_BGR2GRAY);
+  luma.convertTo(luma, CV_32F);
+  return luma;
+}
+
+// `later` as seen from `earlier`, by the true homography.
+cv::Mat Warped(const Renderer& flight, int earlier, int later) {
+  const Eigen::Matrix3d later_from_earlier =
+      flight.Truth(later).first_from_frame.inverse() * flight.Truth(earlier).first_from_frame;
+  const cv::Matx33d matrix(
+      later_from_earlier(0, 0), later_from_earlier(0, 1), later_from_earlier(0, 2),
+      later_from_earlier(1, 0), later_from_earlier(1, 1), later_from_earlier(1, 2),
+      later_from_earlier(2, 0), later_from_earlier(2, 1), later_from_earlier(2, 2));
+  cv::Mat warped;
+  cv::warpPerspective(Luma(flight.Frame(later)), warped, matrix, {320, 240},
+                      cv::INTER_CUBIC | cv::WARP_INVERSE_MAP, cv::BORDER_CONSTANT,
+                      cv::Scalar(-1000));
+  return warped;
+}
+
+TEST(PortableMath, CircularFunctions) {
+  for (double x = -700; x < 700; x += 0.37) {
+    EXPECT_NEAR(Sine(x), std::sin(x), 1e-13) << x;
+    EXPECT_NEAR(Cosine(x), std::cos(x), 1e-13) << x;
+  }
+}
+
+TEST(PortableMath, NormalHasTheStatedMoments) {
+  Random random(5);
+  double sum = 0;
+  double square = 0;
+  constexpr int kCount = 200000;
+  for (int i = 0; i < kCount; ++i) {
+    const double value = NormalFromBits(random.Bits());
+    sum += value;
+    square += value * value;
+  }
+  EXPECT_NEAR(sum / kCount, 0, 0.01);
+  EXPECT_NEAR(square / kCount, 1, 0.01);
+}
+
+TEST(Fill, CoversPixelCentresOnce) {
+  // A square cut into two triangles: each centre belongs to one of them.
+  cv::Mat count(20, 20, CV_8U, cv::Scalar(0));
+  const auto add = [&](int x, int y) { ++count.at<std::uint8_t>(y, x); };
+  using Triangle = std::array<Eigen::Vector2d, 3>;
+  ForEachPixelInside(Triangle{{{2, 3}, {12, 3}, {12, 13}}}, 0, 20, 0, 20, add);
+  ForEachPixelInside(Triangle{{{2, 3}, {12, 13}, {2, 13}}}, 0, 20, 0, 20, add);
+  EXPECT_EQ(cv::countNonZero(count == 1), 100);
+  EXPECT_EQ(cv::countNonZero(count > 1), 0);
+}
+
+TEST(Camera, ProjectInvertsTheRays) {
+  const CameraPath path(CameraPlan{}, 640, 480, 3);
+  const Camera camera = path.At(77.25);
+  for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(0, 0), Eigen::Vector2d(631.5, 20.25)}) {
+    const Eigen::Vector2d spot = (camera.GroundFromPixel() * pixel.homogeneous()).hnormalized();
+    EXPECT_LT((camera.Project({spot.x(), spot.y(), 0}) - pixel).norm(), 1e-9);
+  }
+}
+
+TEST(Renderer, TheSamePlanGivesTheSameBitsOnAnyThreads) {
+  FlightPlan plan = SmallPlan();
+  plan.width = 160;
+  plan.height = 120;
+  plan.frames = 6;
+  const Renderer one(plan, 1);
+  const Renderer many(plan, 5);
+  std::vector<std::future<cv::Mat>> frames;
+  for (int i = plan.frames - 1; i >= 0; --i) {
+    frames.push_back(std::async(std::launch::async, [&many, i] { return many.Frame(i); }));
+  }
+  for (int i = 0; i < plan.frames; ++i) {
+    const cv::Mat frame = frames[plan.frames - 1 - i].get();
+    EXPECT_EQ(cv::norm(one.Frame(i), frame, cv::NORM_INF), 0) << i;
+    const FrameTruth a = one.Truth(i);
+    const FrameTruth b = many.Truth(i);
+    EXPECT_EQ(a.first_from_frame, b.first_from_frame);
+    EXPECT_EQ(a.movers.size(), b.movers.size());
+  }
+  plan.seed += 1;
+  const Renderer other(plan, 2);
+  EXPECT_GT(cv::norm(one.Frame(0), other.Frame(0), cv::NORM_L1), 1e5);
+}
+
+TEST(Renderer, TheGroundFollowsTheTrueHomography) {
+  const cv::Mat earlier = Luma(SmallFlight().Frame(4));
+  const cv::Mat warped = Warped(SmallFlight(), 4, 5);
+  // Half of all pixels differ by less than noise explains: 0.6745 of sqrt(2) times its spread.
+  std::vector<float> differences;
+  for (int y = 0; y < earlier.rows; ++y) {
+    for (int x = 0; x < earlier.cols; ++x) {
+      const float other = warped.at<float>(y, x);
+      if (other > -1) differences.push_back(std::abs(other - earlier.at<float>(y, x)));
+    }
+  }
+  ASSERT_GT(differences.size(), 50000U);
+  std::nth_element(differences.begin(), differences.begin() + differences.size() / 2,
+                   differences.end());
+  EXPECT_LT(differences[differences.size() / 2], 0.6745 * std::sqrt(2.0) * 2.9);
+}
+
+TEST(Renderer, TheTrueHomographyIsTheBestShift) {
+  // Moving the warped picture by a tenth of a pixel in any direction must fit worse.
+  const cv::Mat earlier = Luma(SmallFlight().Frame(4));
+  const cv::Mat warped = Warped(SmallFlight(), 4, 6);
+  const auto misfit = [&](double x, double y) {
+    const cv::Matx23d shift(1, 0, x, 0, 1, y);
+    cv::Mat moved;
+    cv::warpAffine(warped, moved, shift, warped.size(), cv::INTER_CUBIC | cv::WARP_INVERSE_MAP);
+    cv::Mat difference;
+    cv::absdiff(moved, earlier, difference);
+    cv::min(difference, 20.0, difference);
+    return cv::mean(difference(cv::Rect(40, 40, 240, 160)))[0];
+  };
+  // The parabola through three points has its lowest point where the picture really lies.
+  const auto lowest = [](double low, double middle, double high) {
+    return 0.25 * (low - high) / (low - 2 * middle + high);
+  };
+  const double middle = misfit(0, 0);
+  EXPECT_NEAR(lowest(misfit(-0.5, 0), middle, misfit(0.5, 0)), 0, 0.05);
+  EXPECT_NEAR(lowest(misfit(0, -0.5), middle, misfit(0, 0.5)), 0, 0.05);
+}
+
+TEST(Renderer, BoxesSitOnMoversAndNotOnDecoys) {
+  const Renderer& flight = SmallFlight();
+  const cv::Mat earlier = Luma(flight.Frame(10));
+  const cv::Mat warped = Warped(flight, 10, 20);
+  const FrameTruth truth = flight.Truth(10);
+  ASSERT_GE(truth.movers.size(), 3U);
+  ASSERT_GE(truth.decoys.size(), 3U);
+  const auto change = [&](const LabelledBox& box) {
+    const cv::Rect area(static_cast<int>(box.box.x), static_cast<int>(box.box.y),
+                        static_cast<int>(box.box.width), static_cast<int>(box.box.height));
+    cv::Mat difference;
+    cv::absdiff(earlier(area), warped(area), difference);
+    cv::Mat outside = warped(area) < -1;
+    difference.setTo(0, outside);
+    return cv::mean(difference)[0];
+  };
+  double moving = 0;
+  for (const LabelledBox& box : truth.movers) moving += change(box) / truth.movers.size();
+  double standing = 0;
+  for (const LabelledBox& box : truth.decoys) standing += change(box) / truth.decoys.size();
+  EXPECT_GT(moving, 2 * standing);
+}
+
+TEST(Renderer, TruthKeepsItsRules) {
+  const Renderer& flight = SmallFlight();
+  for (const int frame : {0, 11, 23}) {
+    const FrameTruth truth = flight.Truth(frame);
+    for (const std::vector<LabelledBox>* boxes : {&truth.movers, &truth.decoys}) {
+      for (const LabelledBox& box : *boxes) {
+        EXPECT_EQ(box.frame, frame + 1);
+        EXPECT_GE(box.visible, kLeastVisible);
+        EXPECT_GE(std::min(box.box.width, box.box.height), kLeastWidthPx);
+        EXPECT_GE(box.box.x, 0);
+        EXPECT_GE(box.box.y, 0);
+        EXPECT_LE(box.box.x + box.box.width, 320);
+        EXPECT_LE(box.box.y + box.box.height, 240);
+      }
+    }
+  }
+  EXPECT_EQ(flight.Truth(0).first_from_frame, Eigen::Matrix3d::Identity());
+}
+
+TEST(Renderer, RefusesPlansThatMakeNoSense) {
+  FlightPlan plan = SmallPlan();
+  plan.frames = 0;
+  EXPECT_THROW(Renderer(plan, 1), std::invalid_argument);
+  EXPECT_THROW(FindFlightPlan("99"), std::invalid_argument);
+  EXPECT_EQ(FindFlightPlan("1").name, "outskirts");
+  EXPECT_EQ(FindFlightPlan("outskirts").number, "01");
+}
+
+}  // namespace
+}  // namespace windhover::replay

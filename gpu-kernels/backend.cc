@@ -2,8 +2,12 @@
 #include "gpu-kernels/backend.h"
 
 #include <cstdlib>
+#include <optional>
 
 #include "gpu-kernels/cpu/cpu_backend.h"
+#include "gpu-kernels/opencl/device.h"
+#include "gpu-kernels/opencl/opencl_backend.h"
+#include "gpu-kernels/opencl/program_cache.h"
 
 namespace windhover {
 namespace {
@@ -19,6 +23,20 @@ const char* TypeName(DeviceKind kind) {
   }
 }
 
+std::string SelectorFromEnvironment() {
+  const char* value = std::getenv("WINDHOVER_DEVICE");
+  return value == nullptr ? "" : value;
+}
+
+[[noreturn]] void RefuseDevice(const std::string& selector,
+                               const std::vector<DeviceInfo>& open_cl_devices) {
+  std::string text = "no device fits '" + selector + "'; there are:\n";
+  for (const DeviceInfo& device : open_cl_devices) {
+    text += "  " + device.Selector() + "\n";
+  }
+  throw DeviceError(text + "  cpu");
+}
+
 }  // namespace
 
 std::string DeviceInfo::Describe() const {
@@ -32,10 +50,33 @@ std::string DeviceInfo::Selector() const {
   return platform + ":" + TypeName(kind) + ":" + name;
 }
 
-std::shared_ptr<Backend> Backend::Create(const std::string&, const Warn&) {
-  return MakeCpuBackend();
+std::shared_ptr<Backend> Backend::Create(const std::string& device, const Warn& warn) {
+  const std::string selector = device.empty() ? SelectorFromEnvironment() : device;
+  if (selector == "cpu") return MakeCpuBackend();
+
+  const std::vector<opencl::Device> devices = opencl::ListDevices();
+  if (selector.empty() && devices.empty()) {
+    if (warn) {
+      warn(
+          "no OpenCL device found: running on the CPU twin (install a driver, for example "
+          "pocl-opencl-icd, or choose the device 'cpu' to say that this is meant)");
+    }
+    return MakeCpuBackend();
+  }
+  std::vector<DeviceInfo> infos;
+  for (const opencl::Device& candidate : devices) infos.push_back(candidate.info);
+  // The list is in the order of preference: an empty selector takes its first.
+  const std::optional<std::size_t> chosen = opencl::SelectDevice(infos, selector);
+  if (!chosen) RefuseDevice(selector, infos);
+  return opencl::MakeOpenClBackend(devices[*chosen],
+                                   opencl::ProgramCache(opencl::ProgramCache::DefaultFolder()));
 }
 
-std::vector<DeviceInfo> Backend::Devices() { return {CpuTwinInfo()}; }
+std::vector<DeviceInfo> Backend::Devices() {
+  std::vector<DeviceInfo> infos;
+  for (const opencl::Device& device : opencl::ListDevices()) infos.push_back(device.info);
+  infos.push_back(CpuTwinInfo());
+  return infos;
+}
 
 }  // namespace windhover

@@ -94,14 +94,6 @@ Context::Context(const Device& device, ProgramCache cache)
   if (is_cpu()) native_float_lanes_ = static_cast<int>(std::clamp<cl_uint>(lanes, 1, 16));
 }
 
-Context::~Context() {
-  try {
-    StorePrograms();
-  } catch (const std::exception&) {
-    // Without it the next process compiles again.
-  }
-}
-
 std::unique_ptr<Buffer> Context::Allocate(std::size_t size_bytes) const {
   return std::make_unique<Buffer>(*this, size_bytes);
 }
@@ -128,7 +120,7 @@ Program Context::Compile(std::string_view source, const std::string& options) {
   }
   if (!program.from_cache) {
     program.handle = BuildFromSource(source, all_options);
-    unstored_.push_back(key);
+    cache_.Store(key, BinaryOf(program.handle));
   }
   programs_.emplace(std::move(key), program);
   return program;
@@ -136,8 +128,9 @@ Program Context::Compile(std::string_view source, const std::string& options) {
 
 void Context::StorePrograms() {
   const std::lock_guard lock(mutex_);
-  for (const std::string& key : unstored_) cache_.Store(key, BinaryOf(programs_.at(key).handle));
-  unstored_.clear();
+  for (const auto& [key, program] : programs_) {
+    if (!program.from_cache) cache_.Store(key, BinaryOf(program.handle));
+  }
 }
 
 // An empty handle where the driver does not take the binary.

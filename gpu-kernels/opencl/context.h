@@ -74,9 +74,6 @@ struct Program {
 class Context : public std::enable_shared_from_this<Context> {
  public:
   Context(const Device& device, ProgramCache cache);
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-  ~Context();
 
   const DeviceInfo& device() const { return device_.info; }
   // The name that error texts use.
@@ -90,9 +87,9 @@ class Context : public std::enable_shared_from_this<Context> {
   // from the program cache where that has it. Throws DeviceError with the compiler's log.
   Program Compile(std::string_view source, const std::string& options = "");
 
-  // Writes what was compiled here to the program cache; the destructor does the same. Best called
-  // after the kernels have run: some drivers, PoCL among them, finish compiling at the first
-  // launch, and their binaries then hold the result.
+  // Writes the programs that were compiled here, not read, to the program cache once more. Some
+  // drivers, PoCL among them, finish compiling at a kernel's first launch: binaries taken after it
+  // hold the result.
   void StorePrograms();
 
   std::unique_ptr<Buffer> Allocate(std::size_t size_bytes) const;
@@ -116,9 +113,8 @@ class Context : public std::enable_shared_from_this<Context> {
   Handle<cl_context> context_;
   Handle<cl_command_queue> map_queue_;
 
-  std::mutex mutex_;  // guards programs_ and unstored_
-  std::map<std::string, Program> programs_;
-  std::vector<std::string> unstored_;  // keys of programs_ that the cache does not have
+  std::mutex mutex_;                         // guards programs_
+  std::map<std::string, Program> programs_;  // by the program cache's key
 };
 
 // The buffer behind an image or other memory. Throws std::invalid_argument where it was not made by

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu-kernels/opencl/opencl_backend.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "gpu-kernels/decimate/decimate_opencl.h"
 #include "gpu-kernels/difference_threshold/difference_threshold_opencl.h"
@@ -13,6 +17,11 @@
 
 namespace windhover::opencl {
 namespace {
+
+// What pictures from 320 x 240 to 4K, cut into 4 to 100 tiles, and windows of up to 255 frames ask
+// for.
+constexpr int kTransformSides[] = {32, 64, 128, 256, 512};
+constexpr std::size_t kMedianWindows[] = {21, 81, 255};
 
 class OpenClBackend : public Backend {
  public:
@@ -44,7 +53,54 @@ class OpenClBackend : public Backend {
   std::shared_ptr<Context> context_;
 };
 
-void OpenClBackend::WarmUp(const std::function<void(const std::string&)>&) {}
+// Runs each operator once, as drivers may put off compiling until then.
+void OpenClBackend::WarmUp(const std::function<void(const std::string&)>& progress) {
+  const auto announce = [&](const std::string& what) {
+    if (progress) progress(what);
+  };
+  constexpr int kSide = 64;
+  const auto make_image = [this] {
+    GrayImage image = MakeImage<std::uint8_t>(kSide, kSide);
+    const auto mapped = image.Write();
+    std::fill_n(mapped.data(), mapped.stride() * kSide, std::uint8_t{1});
+    return image;
+  };
+  const GrayImage source = make_image();
+  GrayImage result = make_image();
+
+  announce("decimation");
+  const auto decimate = MakeDecimate();
+  for (int factor = 2; factor <= 4; ++factor) {
+    GrayImage small = MakeImage<std::uint8_t>(kSide / factor, kSide / factor);
+    decimate->Run(source, factor, small);
+  }
+  announce("warp");
+  MakeWarp()->Run(source, kIdentity3, result);
+  announce("temporal median");
+  const auto median = MakeTemporalMedian();
+  for (const std::size_t window : kMedianWindows) {
+    median->Run(std::vector<const GrayImage*>(window, &source), 1, result);
+  }
+  announce("difference threshold");
+  BitImage seeds = MakeBitImage(kSide, kSide);
+  const auto difference = MakeDifferenceThreshold();
+  for (const float gain : {0.0F, 1.0F}) {
+    difference->Run(source, source, {.threshold = 20, .gradient_gain_px = gain}, seeds);
+  }
+  for (const int side : kTransformSides) {
+    announce("phase correlation of tile sides of " + std::to_string(side) + " px");
+    PhaseCorrelationSettings settings;
+    settings.tile_width = side;
+    settings.tile_height = side;
+    settings.tiles = {{}};
+    const auto correlation = MakePhaseCorrelation(settings);
+    const auto spectra = correlation->MakeSpectra();
+    correlation->Transform(source, kIdentity3, *spectra);
+    TilePeak peak;
+    correlation->Correlate(*spectra, *spectra, {&peak, 1});
+  }
+  context_->StorePrograms();
+}
 
 }  // namespace
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Tiled phase correlation (thesis 2.4.1), common part: vectors of lanes. It comes before
-// sample_tiles.cl and find_peak.cl in one program, and before transform.cl in one for each side.
+// warp/bilinear.cl, sample_tiles.cl and find_peak.cl in one program, and before transform.cl in one
+// program for each side.
 //
 // Two real tiles of one picture travel as the real and the imaginary part of one complex transform;
 // their spectra are told apart by symmetry where they meet the other picture's. Complex data is

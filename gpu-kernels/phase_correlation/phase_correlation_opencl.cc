@@ -212,11 +212,11 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
   int PeakSide() const { return 2 * tables_.peak_radius + 1; }
 
   Program CompileTileProgram() {
-    return context_->Compile(
-        std::string(kLanesCl) + std::string(kSampleTilesCl) + std::string(kFindPeakCl),
-        Define("V", layout_.lanes) + Define("ROWS", layout_.sample_rows) +
-            Define("BATCH", std::max(layout_.sample_batch, layout_.lanes)) +
-            Define("GROUP", peak_group_) + "-cl-mad-enable");
+    return context_->Compile(std::string(kLanesCl) + std::string(kBilinearCl) +
+                                 std::string(kSampleTilesCl) + std::string(kFindPeakCl),
+                             Define("V", layout_.lanes) + Define("ROWS", layout_.sample_rows) +
+                                 Define("BATCH", std::max(layout_.sample_batch, layout_.lanes)) +
+                                 Define("GROUP", peak_group_) + "-cl-mad-enable");
   }
 
   // One program a side, so that tiles of all shapes share them.
@@ -294,7 +294,7 @@ PhaseCorrelationLayout PhaseCorrelationLayout::For(const Context& context) {
                    : native >= 8 ? 8
                                  : 4,
           .sample_rows = 8,
-          .sample_batch = 128,
+          .sample_batch = 64,
           .peak_group = 1};
 }
 

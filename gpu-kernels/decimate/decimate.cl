@@ -22,15 +22,13 @@ typedef union {
   ushort single[FACTOR * V];
 } Columns;
 
-// The rounded mean of a block: (sum + half) * ceil(2^24 / area) >> 24 is exact for up to 256 pixels.
-uchar Mean(uint sum) {
-  const uint area = FACTOR * FACTOR;
-  const uint reciprocal = ((1u << 24) + area - 1) / area;
-  return (uchar)(((sum + area / 2) * reciprocal) >> 24);
-}
+// The rounded mean of a block: (sum + half) * ceil(2^24 / area) >> 24 is exact for up to 256
+// pixels.
+#define AREA (FACTOR * FACTOR)
+#define MEAN(sum) ((((sum) + AREA / 2u) * (((1u << 24) + AREA - 1u) / AREA)) >> 24)
 
-// One work-item does every get_global_size(0)-th group of V pixels of a result row. Groups may reach
-// into the rows' padding, but not past it.
+// One work-item does every get_global_size(0)-th group of V pixels of a result row. Groups may
+// reach into the rows' padding, but not past it.
 __kernel void Decimate(__global const uchar* restrict source, int source_stride,
                        __global uchar* restrict destination, int width, int height, int stride) {
   const int y = get_global_id(1);
@@ -47,12 +45,18 @@ __kernel void Decimate(__global const uchar* restrict source, int source_stride,
       }
     }
     __global uchar* out = destination + y * stride + x;
+#if V == 16 && FACTOR == 2
+    const ushort16 sum = (ushort16)(columns.lanes[0].even + columns.lanes[0].odd,
+                                    columns.lanes[1].even + columns.lanes[1].odd);
+    *(__global uchar16*)out = convert_uchar16(MEAN(convert_uint16(sum)));
+#else
 #pragma unroll
     for (int i = 0; i < V; ++i) {
       uint sum = 0;
 #pragma unroll
       for (int j = 0; j < FACTOR; ++j) sum += columns.single[i * FACTOR + j];
-      out[i] = Mean(sum);
+      out[i] = (uchar)MEAN(sum);
     }
+#endif
   }
 }

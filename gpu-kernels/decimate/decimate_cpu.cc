@@ -38,6 +38,8 @@ inline void BlockMeans(const std::uint16_t* sums, int factor, int width, std::ui
 WINDHOVER_MULTIVERSION
 void BlockMeansOfRow(const std::uint16_t* sums, int factor, int width, std::uint8_t* out) {
   switch (factor) {
+    case 1:
+      return BlockMeans<1>(sums, factor, width, out);
     case 2:
       return BlockMeans<2>(sums, factor, width, out);
     case 3:

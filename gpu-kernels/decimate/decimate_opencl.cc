@@ -23,11 +23,12 @@ class DecimateOpenCl : public Decimate {
     CheckDecimate(source, factor, destination);
     const std::size_t width = destination.width();
     const std::size_t height = destination.height();
-    const opencl::WorkSize size = context_->is_cpu()
-                                      ? opencl::WorkSize{.global = {1, height, 1}}
-                                      : opencl::WorkSize{.global = {opencl::RoundUp(width, 32),
-                                                                    opencl::RoundUp(height, 4), 1},
-                                                         .local = {32, 4, 1}};
+    const opencl::WorkSize size =
+        context_->is_cpu()
+            ? opencl::WorkSize{.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}}
+            : opencl::WorkSize{
+                  .global = {opencl::RoundUp(width, 32), opencl::RoundUp(height, 4), 1},
+                  .local = {32, 4, 1}};
     KernelFor(factor).Enqueue(queue_, size, source, static_cast<cl_int>(source.stride()),
                               destination, destination.width(), destination.height(),
                               static_cast<cl_int>(destination.stride()));

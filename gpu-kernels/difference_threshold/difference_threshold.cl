@@ -1,36 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Motion seeds: one bit a pixel, one word of 32 pixels at a time.
+// Motion seeds: one bit a pixel.
 //
 // Macros given to the compiler:
 //   GRADIENT   1 where the threshold has a gradient term, else 0
+//   V          pixels that are compared together: 16 or 64. OpenCL has no vectors of more than 16;
+//              wider ones are an extension of the compilers for CPUs.
 
-#define LANE_NUMBERS ((ushort16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#if V == 16
+typedef uchar16 Bytes;
+typedef ushort16 Shorts;
+#define TO_SHORTS(bytes) convert_ushort16(bytes)
+#define TO_BYTES(shorts) convert_uchar16(shorts)
+#define AS_BYTES(mask) as_uchar16(mask)
+#define AS_SHORTS(mask) as_ushort16(mask)
+#define LOAD_UNALIGNED(pointer) vload16(0, pointer)
+#else
+typedef uchar Bytes __attribute__((ext_vector_type(V)));
+typedef ushort Shorts __attribute__((ext_vector_type(V)));
+typedef Bytes UnalignedBytes __attribute__((aligned(1)));
+#define TO_SHORTS(bytes) __builtin_convertvector(bytes, Shorts)
+#define TO_BYTES(shorts) __builtin_convertvector(shorts, Bytes)
+#define AS_BYTES(mask) __builtin_astype(mask, Bytes)
+#define AS_SHORTS(mask) __builtin_astype(mask, Shorts)
+#define LOAD_UNALIGNED(pointer) (*(__global const UnalignedBytes*)(pointer))
+#endif
+#define LOAD(pointer) (*(__global const Bytes*)(pointer))
+#define INLINE __attribute__((always_inline)) static inline
+// Words that a work-item makes at a time, and their pixels.
+#define WORDS ((V + 31) / 32)
+#define STEP (32 * WORDS)
 
-// 16 grey levels of a row, 0 past its width.
-ushort16 LoadRow(__global const uchar* row, int x, int width) {
-  const ushort16 grey = convert_ushort16(*(__global const uchar16*)(row + x));
-  if (x + 16 <= width) return grey;
-  return select((ushort16)(0), grey, LANE_NUMBERS < (ushort16)(max(width - x, 0)));
+typedef union {
+  Bytes all;
+  uchar single[V];
+  ulong eights[V / 8];
+} Pixels;
+
+INLINE Bytes Difference(Bytes a, Bytes b) { return a > b ? a - b : b - a; }
+
+// 0 where a or b has not been seen.
+INLINE Bytes SeenDifference(Bytes a, Bytes b) {
+  return Difference(a, b) & AS_BYTES((a != (Bytes)(0)) & (b != (Bytes)(0)));
 }
 
-// |a - b|, 0 where a or b has not been seen.
-ushort16 SeenDifference(ushort16 a, ushort16 b) {
-  return select((ushort16)(0), abs_diff(a, b), (a != (ushort)0) & (b != (ushort)0));
+// Pixels first to first + V - 1 of a row, 0 where they lie outside its width. Reads from memory as
+// a whole what surely lies inside the row's memory.
+INLINE Bytes LoadShifted(__global const uchar* row, int first, int width) {
+  if (first >= 0 && first + V <= width) return LOAD_UNALIGNED(row + first);
+  Pixels pixels;
+  for (int i = 0; i < V; ++i) {
+    const int x = first + i;
+    pixels.single[i] = x >= 0 && x < width ? row[x] : 0;
+  }
+  return pixels.all;
 }
 
-// Bit i of the result is the highest bit of lane i.
-uint PackLanes(short16 mask) {
-  const ushort16 bits = as_ushort16(mask) & ((ushort16)(1) << LANE_NUMBERS);
-  const ushort8 or8 = bits.lo | bits.hi;
-  const ushort4 or4 = or8.lo | or8.hi;
-  const ushort2 or2 = or4.lo | or4.hi;
-  return or2.x | or2.y;
+// Bit i is the lowest one of byte i. The multiplication gathers those of eight bytes in the
+// highest.
+INLINE ulong Pack(Bytes flags) {
+  Pixels pixels;
+  pixels.all = flags;
+  ulong bits = 0;
+#pragma unroll
+  for (int i = 0; i < V / 8; ++i) {
+    bits |= ((pixels.eights[i] * 0x0102040810204080UL) >> 56) << (8 * i);
+  }
+  return bits;
 }
 
-// One work-item does every get_global_size(0)-th word of a row. All in units of 1/128 grey level,
-// which makes the gradient term, gain_64ths / 64 * difference / 2, an integer; both sides of the
-// comparison fit 16 bits.
+// One work-item does every get_global_size(0)-th group of words of a row; groups may reach into the
+// rows' padding. All in units of 1/128 grey level, which makes the gradient term,
+// gain_64ths / 64 * difference / 2, an integer; both sides of the comparison fit 16 bits.
 __kernel void DifferenceThreshold(__global const uchar* restrict frame, int frame_stride,
                                   __global const uchar* restrict background,
                                   int background_stride, int width, int height, int threshold,
@@ -40,37 +81,33 @@ __kernel void DifferenceThreshold(__global const uchar* restrict frame, int fram
   if (y >= height) return;
   __global const uchar* f = frame + y * frame_stride;
   __global const uchar* b = background + y * background_stride;
-  // Of rows outside the picture nothing is seen: their width is 0.
-  __global const uchar* above = y > 0 ? b - background_stride : b;
-  __global const uchar* below = y + 1 < height ? b + background_stride : b;
-  const int above_width = y > 0 ? width : 0;
-  const int below_width = y + 1 < height ? width : 0;
-  const int words = (width + 31) / 32;
-  for (int word = get_global_id(0); word < words; word += get_global_size(0)) {
-    uint bits = 0;
-    for (int half_word = 0; half_word < 2; ++half_word) {
-      const int x = word * 32 + half_word * 16;
-      const ushort16 grey = convert_ushort16(*(__global const uchar16*)(f + x));
-      const ushort16 centre = LoadRow(b, x, width);
-      const ushort16 excess = sub_sat(abs_diff(grey, centre), (ushort16)((ushort)threshold));
+  const bool has_rows = y > 0 && y + 1 < height;
+  __global const uchar* above = has_rows ? b - background_stride : b;
+  __global const uchar* below = has_rows ? b + background_stride : b;
+  const Bytes limit = (Bytes)((uchar)threshold);
+  for (int first = get_global_id(0) * STEP; first < width; first += get_global_size(0) * STEP) {
+    ulong bits = 0;
+    for (int x = first; x < first + STEP; x += V) {
+      const Bytes grey = LOAD(f + x);
+      const Bytes centre = LOAD(b + x);
+      const Bytes change = Difference(grey, centre);
+      Bytes is_seed = AS_BYTES((grey != (Bytes)(0)) & (centre != (Bytes)(0)) & (change > limit));
 #if GRADIENT
-      const ushort before = x > 0 ? b[x - 1] : 0;
-      const ushort after = x + 16 < width ? b[x + 16] : 0;
-      const ushort16 left =
-          (ushort16)(before, centre.s0123, centre.s4567, centre.s89ab, centre.scd, centre.se);
-      const ushort16 right =
-          (ushort16)(centre.s1, centre.s23, centre.s4567, centre.s89ab, centre.scdef, after);
-      const ushort16 dx = SeenDifference(left, right);
-      const ushort16 dy =
-          SeenDifference(LoadRow(above, x, above_width), LoadRow(below, x, below_width));
-      const ushort16 forgiven = max(dx, dy) * (ushort16)((ushort)gain_64ths);
-#else
-      const ushort16 forgiven = 0;
+      const Bytes dx =
+          SeenDifference(LoadShifted(b, x - 1, width), LoadShifted(b, x + 1, width));
+      // Rows outside the picture are not seen; above and below are then the same row.
+      const Bytes dy = SeenDifference(LOAD(above + x), LOAD(below + x));
+      const Shorts forgiven =
+          TO_SHORTS(dx > dy ? dx : dy) * (Shorts)((ushort)gain_64ths);
+      const Shorts excess = TO_SHORTS(change - limit) * (Shorts)(128);
+      is_seed &= TO_BYTES(AS_SHORTS(excess > forgiven) & (Shorts)(255));
 #endif
-      const short16 is_seed = ((excess * (ushort16)(128)) > forgiven) & (grey != (ushort)0) &
-                              (centre != (ushort)0);
-      bits |= PackLanes(is_seed) << (16 * half_word);
+      bits |= Pack(is_seed & (Bytes)(1)) << (x - first);
     }
-    seeds[y * seeds_stride + word] = bits;
+    // No seeds past the width.
+    if (first + STEP > width) bits &= (1UL << (width - first)) - 1;
+    for (int i = 0; i < WORDS; ++i) {
+      seeds[y * seeds_stride + first / 32 + i] = (uint)(bits >> (32 * i));
+    }
   }
 }

@@ -8,8 +8,8 @@ namespace windhover {
 struct DifferenceThresholdSettings {
   // Grey levels by which a pixel must differ from the background, 1 to 255.
   int threshold = 20;
-  // Added for each grey level per px of the background's gradient: the registration's local error in
-  // px that the threshold forgives, 0 to 4.
+  // Added for each grey level per px of the background's gradient: the registration's local error
+  // in px that the threshold forgives, 0 to 4.
   float gradient_gain_px = 0.0F;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu-kernels/difference_threshold/difference_threshold_opencl.h"
 
+#include <string>
+
 #include "gpu-kernels/difference_threshold/difference_threshold_check.h"
 #include "gpu-kernels/opencl/kernel.h"
 #include "gpu-kernels/opencl/kernel_sources.h"
@@ -15,9 +17,8 @@ class DifferenceThresholdOpenCl : public DifferenceThreshold {
   explicit DifferenceThresholdOpenCl(opencl::Context& context)
       : is_cpu_(context.is_cpu()),
         queue_(context),
-        plain_(context.Compile(kDifferenceThresholdCl, "-DGRADIENT=0"), "DifferenceThreshold"),
-        with_gradient_(context.Compile(kDifferenceThresholdCl, "-DGRADIENT=1"),
-                       "DifferenceThreshold") {}
+        plain_(Compile(context, "-DGRADIENT=0"), "DifferenceThreshold"),
+        with_gradient_(Compile(context, "-DGRADIENT=1"), "DifferenceThreshold") {}
 
   void Run(const GrayImage& frame, const GrayImage& background,
            const DifferenceThresholdSettings& settings, BitImage& seeds) override {
@@ -27,7 +28,7 @@ class DifferenceThresholdOpenCl : public DifferenceThreshold {
     const std::size_t height = frame.height();
     const opencl::WorkSize size =
         is_cpu_
-            ? opencl::WorkSize{.global = {1, height, 1}}
+            ? opencl::WorkSize{.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}}
             : opencl::WorkSize{.global = {opencl::RoundUp(words, 8), opencl::RoundUp(height, 8), 1},
                                .local = {8, 8, 1}};
     (gain_64ths == 0 ? plain_ : with_gradient_)
@@ -41,6 +42,17 @@ class DifferenceThresholdOpenCl : public DifferenceThreshold {
  private:
   using ThresholdKernel = opencl::Kernel<GlobalMemory, cl_int, GlobalMemory, cl_int, cl_int, cl_int,
                                          cl_int, cl_int, GlobalMemory, cl_int>;
+
+  static opencl::Program Compile(opencl::Context& context, const std::string& options) {
+    if (context.is_cpu()) {
+      try {
+        return context.Compile(kDifferenceThresholdCl, options + " -DV=64");
+      } catch (const DeviceError&) {
+        // A compiler without vectors wider than OpenCL's.
+      }
+    }
+    return context.Compile(kDifferenceThresholdCl, options + " -DV=16");
+  }
 
   const bool is_cpu_;
   opencl::Queue queue_;

@@ -2,15 +2,16 @@
 //
 // Pixel-wise lower median of the frames that have seen a pixel.
 //
-// OpenCL C 1.2 knows no array of buffers as an argument. So each frame is an argument of its own, which
-// saves copying the window on every frame; a kernel with 32 such arguments serves up to 32 frames, one
-// with 96 serves up to 96 (and keeps within the 1024 bytes of arguments that every device takes). Where
-// there are still more, or their rows differ in stride, the frames are first stacked in one buffer.
+// OpenCL C 1.2 knows no array of buffers as an argument. So each frame is an argument of its own,
+// which saves copying the window on every frame; a kernel with 32 such arguments serves up to 32
+// frames, one with 96 serves up to 96 (and keeps within the 1024 bytes of arguments that every
+// device takes). Where there are still more, or their rows differ in stride, the frames are first
+// stacked in one buffer.
 //
 // Macros given to the compiler:
 //   SLOTS   frames that are arguments: 32 or 96; 0 for frames stacked in one buffer
-//   V       pixels that are searched together: 1 to 64, a divisor of 64. OpenCL has no vectors of more
-//           than 16; wider ones are an extension of the compilers for CPUs.
+//   V       pixels that are searched together: 1 to 64, a divisor of 64. OpenCL has no vectors of
+//           more than 16; wider ones are an extension of the compilers for CPUs.
 
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -38,14 +39,25 @@ typedef uchar Bytes __attribute__((ext_vector_type(V)));
 #define ELEMENT(name) name,
 
 #if SLOTS > 0
-#define VALUES(i) (*(__global const Bytes*)(frames[i] + offset))
+#define IN_FRAME(i) (*(__global const Bytes*)(frames[i] + offset))
 #else
-#define VALUES(i) (*(__global const Bytes*)(stack + (ulong)(i) * frame_pitch + offset))
+#define IN_FRAME(i) (*(__global const Bytes*)(stack + (ulong)(i) * frame_pitch + offset))
+#endif
+// CPUs gather the values first: frames whose size is a multiple of 4096 bytes would otherwise evict
+// one another from the first level cache in each of the 8 steps. GPUs have no such memory of their
+// own.
+#if V >= 16
+#define MAX_FRAMES (SLOTS > 0 ? SLOTS : 255)
+#define KEEP(i, value) (kept[i] = (value))
+#define VALUES(i) kept[i]
+#else
+#define KEEP(i, value) (value)
+#define VALUES(i) IN_FRAME(i)
 #endif
 
-// The median of n seen values is the largest m that at least n / 2 + 1 values reach, found bit by bit
-// from the highest. One work-item does every get_global_size(0)-th group of V pixels of a row; groups
-// may reach into the rows' padding.
+// The median of n seen values is the largest m that at least n / 2 + 1 values reach, found bit by
+// bit from the highest. One work-item does every get_global_size(0)-th group of V pixels of a row;
+// groups may reach into the rows' padding.
 __kernel void TemporalMedian(
 #if SLOTS > 0
     FRAMES(PARAMETER)
@@ -59,10 +71,13 @@ __kernel void TemporalMedian(
 #if SLOTS > 0
   __global const uchar* const frames[SLOTS] = {FRAMES(ELEMENT)};
 #endif
+#if V >= 16
+  Bytes kept[MAX_FRAMES];
+#endif
   for (int x = get_global_id(0) * V; x < width; x += get_global_size(0) * V) {
     const int offset = y * frame_stride + x;
     Bytes seen = 0;
-    for (int i = 0; i < count; ++i) seen -= AT_LEAST(VALUES(i), (Bytes)(1));
+    for (int i = 0; i < count; ++i) seen -= AT_LEAST(KEEP(i, IN_FRAME(i)), (Bytes)(1));
     const Bytes needed = seen / (Bytes)(2) + (Bytes)(1);
     Bytes result = 0;
     for (int bit = 128; bit > 0; bit >>= 1) {

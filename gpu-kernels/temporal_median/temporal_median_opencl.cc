@@ -106,7 +106,8 @@ class TemporalMedianOpenCl : public TemporalMedian {
 
   opencl::WorkSize WorkSizeOf(const GrayImage& image) const {
     const std::size_t height = image.height();
-    if (context_->is_cpu()) return {.global = {1, height, 1}};
+    if (context_->is_cpu())
+      return {.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}};
     const std::size_t groups = (image.width() + kGpuLanes - 1) / kGpuLanes;
     return {.global = {opencl::RoundUp(groups, 32), opencl::RoundUp(height, 4), 1},
             .local = {32, 4, 1}};

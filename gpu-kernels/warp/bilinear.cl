@@ -27,9 +27,9 @@ typedef struct {
   int stride;
 } Source;
 
-// Samples `first` to first + BATCH - 1 of a row whose homogeneous coordinates are
-// origin + step * number. Seen is a sample with w > 0 within the centres of the border pixels. At the
-// right and bottom border its place between four pixels becomes 1, so that all four stay inside.
+// Samples `first` to first + BATCH - 1 of a row whose homogeneous coordinates are origin + step *
+// number. Seen is a sample with w > 0 within the centres of the border pixels. At the right and
+// bottom border its place between four pixels becomes 1, so that all four stay inside.
 INLINE void SampleRow(Source source, float3 origin, float3 step, int first, Samples* samples) {
   const float last_x = (float)(source.width - 1);
   const float last_y = (float)(source.height - 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu-kernels/warp/row_sampler_cpu.h"
 
+#include <bit>
 #include <cstring>
 
 #include "gpu-kernels/multiversion.h"
@@ -53,7 +54,9 @@ void Locate(const RowLine& line, const PictureShape& shape, int length, std::int
   }
 }
 
-// The two pixels side by side at each address, and the two below them.
+// The two pixels side by side at each address, the left one in the low byte, and the two below
+// them.
+static_assert(std::endian::native == std::endian::little);
 void Gather(const std::uint8_t* picture, int to_next_row, const std::int32_t* offsets, int length,
             std::uint16_t* upper, std::uint16_t* lower) {
   for (int i = 0; i < length; ++i) {

@@ -43,11 +43,12 @@ class WarpOpenCl : public Warp {
     std::copy(coefficients.begin(), coefficients.end(), matrix.s);
     const std::size_t width = destination.width();
     const std::size_t height = destination.height();
-    const opencl::WorkSize size = layout_.whole_rows
-                                      ? opencl::WorkSize{.global = {1, height, 1}}
-                                      : opencl::WorkSize{.global = {opencl::RoundUp(width, 32),
-                                                                    opencl::RoundUp(height, 4), 1},
-                                                         .local = {32, 4, 1}};
+    const opencl::WorkSize size =
+        layout_.whole_rows
+            ? opencl::WorkSize{.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}}
+            : opencl::WorkSize{
+                  .global = {opencl::RoundUp(width, 32), opencl::RoundUp(height, 4), 1},
+                  .local = {32, 4, 1}};
     kernel_.Enqueue(queue_, size, source, source.width(), source.height(),
                     static_cast<cl_int>(source.stride()), matrix, destination, destination.width(),
                     destination.height(), static_cast<cl_int>(destination.stride()));

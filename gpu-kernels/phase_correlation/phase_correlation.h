@@ -40,8 +40,8 @@ struct TilePeak {
   // half a tile's side.
   float dx = 0.0F;
   float dy = 0.0F;
-  // Covariance of (dx, dy) in px^2: second moments of the peak's footprint above the noise threshold,
-  // over the squared ratio of its height to the noise.
+  // Covariance of (dx, dy) in px^2: second moments of the peak's footprint above the noise
+  // threshold, over the squared ratio of its height to the noise.
   float covariance_xx = 0.0F;
   float covariance_xy = 0.0F;
   float covariance_yy = 0.0F;
@@ -66,8 +66,8 @@ class TileSpectra {
 // Phase correlation of tile pairs (thesis 2.4.1, 2.4.2): window, transform, normalised cross-power
 // spectrum (eq. 2.18), inverse transform, peak at sub-pixel accuracy (eq. 2.19), its footprint.
 //
-// The reference tiles lie at `tiles` on the reference grid. A current picture is sampled on that same
-// grid through a predicted homography, so that what is left to measure is small, and a kept
+// The reference tiles lie at `tiles` on the reference grid. A current picture is sampled on that
+// same grid through a predicted homography, so that what is left to measure is small, and a kept
 // reference's spectra serve any number of current pictures.
 //
 // transform    pixel x of a tile is the picture at picture_from_grid(origin + x), bilinear; samples

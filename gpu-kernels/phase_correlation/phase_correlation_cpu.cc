@@ -99,15 +99,15 @@ void WindowRow(float* values, const float* seen, const float* window_x, float wi
 // Weighted, normalised cross-power spectrum (eq. 2.18, with the sign that puts the peak of
 // current(x + d) = reference(x) at d).
 WINDHOVER_MULTIVERSION
-void CrossPower(const float* reference, const float* current, const float* weight,
-                float noise_power, int bins, float* out) {
+void CrossPower(const float* reference, const float* current, const float* weight, float damping,
+                int bins, float* out) {
   for (int i = 0; i < bins; ++i) {
     const float real =
         current[2 * i] * reference[2 * i] + current[2 * i + 1] * reference[2 * i + 1];
     const float imaginary =
         current[2 * i + 1] * reference[2 * i] - current[2 * i] * reference[2 * i + 1];
     const float magnitude = std::sqrt(real * real + imaginary * imaginary);
-    const float scale = weight[i] / (magnitude + noise_power);
+    const float scale = weight[i] / (magnitude + damping);
     out[2 * i] = scale * real;
     out[2 * i + 1] = scale * imaginary;
   }
@@ -213,7 +213,7 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
     }
     for (std::size_t i = 0; i < peaks.size(); ++i) {
       CrossPower(own_reference.spectrum(i), own_current.spectrum(i), tables_.spectral_weight.data(),
-                 tables_.noise_power, bins_, spectrum_.get());
+                 tables_.damping, bins_, spectrum_.get());
       fftwf_execute_dft_c2r(inverse_.get(), AsComplex(spectrum_.get()), tile_.get());
       peaks[i] =
           MeasurePeak(tables_, FindPeak(), own_reference.coverage(i), own_current.coverage(i));

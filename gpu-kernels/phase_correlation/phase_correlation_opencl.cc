@@ -173,10 +173,9 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
     if (peaks.size() != settings_.tiles.size()) {
       throw std::invalid_argument("phase correlation: there must be one peak a tile");
     }
-    kernels_.transform_cross_power.Enqueue(queue_, ColumnsOf(tables_.tile_width),
-                                           *own_reference.spectra, *own_current.spectra,
-                                           tables_.tile_width, *spectral_weight_,
-                                           tables_.noise_power, *twiddle_y_, *order_y_, *columns_);
+    kernels_.transform_cross_power.Enqueue(
+        queue_, ColumnsOf(tables_.tile_width), *own_reference.spectra, *own_current.spectra,
+        tables_.tile_width, *spectral_weight_, tables_.damping, *twiddle_y_, *order_y_, *columns_);
     kernels_.transform_columns.Enqueue(queue_, ColumnsOf(tables_.tile_height), *columns_,
                                        tables_.tile_height, *twiddle_x_, *order_x_, *tiles_);
     const std::size_t group = peak_group_;

@@ -142,8 +142,8 @@ PhaseCorrelationTables::PhaseCorrelationTables(const PhaseCorrelationSettings& s
   spectral_weight = SpectralWeight(tile_width, tile_height, settings.peak_sigma_px);
   const double grey_variance =
       static_cast<double>(settings.noise_sigma) * settings.noise_sigma + 1.0 / 12.0;
-  noise_power = static_cast<float>(kDamping * grey_variance * SumOfSquares(window_x) *
-                                   SumOfSquares(window_y));
+  damping = static_cast<float>(kDamping * grey_variance * SumOfSquares(window_x) *
+                               SumOfSquares(window_y));
   peak_radius = std::min(2 + static_cast<int>(std::ceil(3.0F * settings.peak_sigma_px)),
                          std::min(tile_width, tile_height) / 4);
 }

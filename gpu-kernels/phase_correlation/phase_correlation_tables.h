@@ -43,7 +43,7 @@ struct PhaseCorrelationTables {
   // the window, where 1/12 is the power of rounding to whole grey levels. Measured on textures of
   // 128 px: against a factor of 1, 64 halves the error under noise and blur, costs nothing without
   // them, and finds shifts of 30 px that 1 loses.
-  float noise_power;
+  float damping;
 
   // Half side in px of the square about the highest sample that counts as the peak's neighbourhood:
   // 2 + ceil(3 * peak_sigma_px), but at most a quarter of the smaller tile side.

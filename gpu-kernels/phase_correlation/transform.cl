@@ -231,12 +231,12 @@ INLINE Complex LoadMirroredBins(__global const float* row, int x, int columns, i
 }
 
 // Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak of
-// current(x + d) = reference(x) at d), weighted. `noise_power` damps what does not rise above it.
+// current(x + d) = reference(x) at d), weighted. `damping` holds down what does not rise above it.
 INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight,
-                                    float noise_power) {
+                                    float damping) {
   const Lanes re = current.re * reference.re + current.im * reference.im;
   const Lanes im = current.im * reference.re - current.re * reference.im;
-  const Lanes scale = weight / (sqrt(re * re + im * im) + noise_power);
+  const Lanes scale = weight / (sqrt(re * re + im * im) + damping);
   return (Complex){scale * re, scale * im};
 }
 
@@ -248,7 +248,7 @@ INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes we
 // and c_b are the cross powers, so that the surfaces of a and b come out as real and imaginary part.
 __kernel void TransformCrossPower(__global const float* restrict reference,
                                   __global const float* restrict current, int columns,
-                                  __global const float* restrict weight, float noise_power,
+                                  __global const float* restrict weight, float damping,
                                   __global const float2* restrict twiddle,
                                   __global const int* restrict order, __global float* restrict out) {
   const int x = get_global_id(0) * V;
@@ -267,10 +267,10 @@ __kernel void TransformCrossPower(__global const float* restrict reference,
     const Lanes w = LOAD(weight + row + x);
     const Complex first =
         NormalisedCrossPower((Complex){r.re + s.re, r.im - s.im},
-                             (Complex){c.re + d.re, c.im - d.im}, w, 4.0f * noise_power);
+                             (Complex){c.re + d.re, c.im - d.im}, w, 4.0f * damping);
     const Complex second =
         NormalisedCrossPower((Complex){r.im + s.im, s.re - r.re},
-                             (Complex){c.im + d.im, d.re - c.re}, w, 4.0f * noise_power);
+                             (Complex){c.im + d.im, d.re - c.re}, w, 4.0f * damping);
     re[y] = second.im + first.re;
     im[y] = second.re - first.im;
   }

@@ -8,7 +8,7 @@
 
 namespace windhover {
 
-// How the host is about to use mapped memory.
+// How the host is about to use mapped memory. kWrite loses what was there before.
 enum class Access { kRead, kWrite, kReadWrite };
 
 // A block of bytes owned by a backend. Operators of the same backend use it where it lies; the host

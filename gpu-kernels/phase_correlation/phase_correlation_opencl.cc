@@ -152,9 +152,8 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
     }
     queue_.EnqueueWrite(*from_tile_, host_from_tile_.data(),
                         host_from_tile_.size() * sizeof(float));
-    const std::size_t row_items = tables_.tile_height / layout_.sample_rows;
-    kernels_.sample.Enqueue(queue_, {.global = {row_items, 2 * pairs_, 1}}, picture,
-                            picture.width(), picture.height(),
+    kernels_.sample.Enqueue(queue_, SizeOf(tables_.tile_height / layout_.sample_rows, 2 * pairs_),
+                            picture, picture.width(), picture.height(),
                             static_cast<cl_int>(picture.stride()), *from_tile_,
                             static_cast<cl_int>(settings_.tiles.size()), tables_.tile_width,
                             tables_.tile_height, *window_x_, *window_y_, *tiles_, *row_sums_);
@@ -235,10 +234,15 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
             {tiles, "FindPeak"}};
   }
 
-  // One work-item for each of the columns' groups, for all pairs of tiles.
-  opencl::WorkSize ColumnsOf(int columns) const {
-    return {.global = {static_cast<std::size_t>(columns / layout_.lanes), pairs_, 1}};
+  // `items` work-items a row of groups, `rows` of them.
+  opencl::WorkSize SizeOf(int items, std::size_t rows) const {
+    const auto row = static_cast<std::size_t>(items);
+    return {.global = {row, rows, 1},
+            .local = {std::min<std::size_t>(layout_.work_group, row), 1, 1}};
   }
+
+  // One work-item for `lanes` of the columns, for all pairs of tiles.
+  opencl::WorkSize ColumnsOf(int columns) const { return SizeOf(columns / layout_.lanes, pairs_); }
 
   const TileSpectraOpenCl& Own(const TileSpectra& spectra) const {
     const auto* own = dynamic_cast<const TileSpectraOpenCl*>(&spectra);
@@ -294,6 +298,7 @@ PhaseCorrelationLayout PhaseCorrelationLayout::For(const Context& context) {
                                  : 4,
           .sample_rows = 8,
           .sample_batch = 64,
+          .work_group = 1,
           .peak_group = 1};
 }
 

@@ -16,6 +16,9 @@ struct PhaseCorrelationLayout {
   int sample_rows = 1;
   // Samples that it works on together, a power of two; at least `lanes` are.
   int sample_batch = 1;
+  // Work-items in a group of those that sample and transform: a power of two. Fewer where a row of
+  // groups has fewer.
+  int work_group = 32;
   // Work-items that look for the peak of one tile together: a power of two, 1 to 256.
   int peak_group = 64;
 

@@ -399,22 +399,28 @@ TEST_P(PhaseCorrelationTwinTest, TwinsAgree) {
 // As on CPUs with vectors of 16, 8 and 4, and as on GPUs.
 INSTANTIATE_TEST_SUITE_P(
     Layouts, PhaseCorrelationTwinTest,
-    testing::Values(TwinCase{"Lanes16Small",
-                             {.lanes = 16, .sample_rows = 8, .sample_batch = 64, .peak_group = 1},
-                             {{16, 16}, {32, 64}, {64, 32}}},
-                    TwinCase{"Lanes16Large",
-                             {.lanes = 16, .sample_rows = 8, .sample_batch = 64, .peak_group = 1},
-                             {{128, 128}, {256, 128}, {128, 256}, {512, 16}}},
-                    TwinCase{"Lanes8",
-                             {.lanes = 8, .sample_rows = 8, .sample_batch = 64, .peak_group = 1},
-                             {{64, 64}, {32, 64}}},
-                    TwinCase{"Lanes4",
-                             {.lanes = 4, .sample_rows = 16, .sample_batch = 16, .peak_group = 2},
-                             {{32, 32}, {32, 64}}},
-                    TwinCase{"Lanes2",
-                             {.lanes = 2, .sample_rows = 1, .sample_batch = 2, .peak_group = 32},
-                             {{32, 32}, {64, 32}}},
-                    TwinCase{"Lanes1", {}, {{64, 64}, {32, 64}}}),
+    testing::Values(
+        TwinCase{
+            "Lanes16Small",
+            {.lanes = 16, .sample_rows = 8, .sample_batch = 64, .work_group = 1, .peak_group = 1},
+            {{16, 16}, {32, 64}, {64, 32}}},
+        TwinCase{
+            "Lanes16Large",
+            {.lanes = 16, .sample_rows = 8, .sample_batch = 64, .work_group = 1, .peak_group = 1},
+            {{128, 128}, {256, 128}, {128, 256}, {512, 16}}},
+        TwinCase{
+            "Lanes8",
+            {.lanes = 8, .sample_rows = 8, .sample_batch = 64, .work_group = 1, .peak_group = 1},
+            {{64, 64}, {32, 64}}},
+        TwinCase{
+            "Lanes4",
+            {.lanes = 4, .sample_rows = 16, .sample_batch = 16, .work_group = 4, .peak_group = 2},
+            {{32, 32}, {32, 64}}},
+        TwinCase{
+            "Lanes2",
+            {.lanes = 2, .sample_rows = 1, .sample_batch = 2, .work_group = 16, .peak_group = 32},
+            {{32, 32}, {64, 32}}},
+        TwinCase{"Lanes1", {}, {{64, 64}, {32, 64}}}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

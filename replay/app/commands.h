@@ -10,5 +10,6 @@ namespace windhover::replay {
 void AddRenderCommand(CLI::App& app);
 void AddDetectCommand(CLI::App& app);
 void AddScoreCommand(CLI::App& app);
+void AddBenchCommand(CLI::App& app);
 
 }  // namespace windhover::replay

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   windhover::replay::AddRenderCommand(app);
   windhover::replay::AddDetectCommand(app);
   windhover::replay::AddScoreCommand(app);
+  windhover::replay::AddBenchCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "replay/app/commands.h"
 #include "replay/app/interrupt.h"
+#include "replay/app/picture_size.h"
 #include "replay/app/progress.h"
 #include "replay/format/format_error.h"
 #include "replay/format/homographies.h"
@@ -32,19 +32,6 @@ struct RenderSettings {
   int threads = 0;
 };
 
-void ParseSize(const std::string& text, FlightPlan& plan) {
-  int width = 0;
-  int height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 ||
-      height < 16 || width > 8192 || height > 8192) {
-    throw std::invalid_argument("--size must be WIDTHxHEIGHT, 16 to 8192 px each, not '" + text +
-                                "'");
-  }
-  plan.width = width;
-  plan.height = height;
-}
-
 void WriteTruth(const std::filesystem::path& folder, const std::vector<FrameTruth>& truth) {
   std::vector<LabelledBox> movers;
   std::vector<LabelledBox> decoys;
@@ -63,7 +50,7 @@ void Render(const RenderSettings& settings) {
   FlightPlan plan = FindFlightPlan(settings.sequence);
   if (settings.frames > 0) plan.frames = settings.frames;
   if (settings.seed > 0) plan.seed = settings.seed;
-  if (!settings.size.empty()) ParseSize(settings.size, plan);
+  if (!settings.size.empty()) ParseSize(settings.size, plan.width, plan.height);
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const int threads = settings.threads > 0 ? settings.threads : cores;
 

@@ -174,13 +174,17 @@ bool Renderer::Moves(const Traffic::Vehicle& vehicle, int frame) const {
   return way.norm() >= kMoverTravelPx * camera_path_.pixel_m();
 }
 
+Eigen::Matrix3d Renderer::TrueHomography(int frame) const {
+  if (frame == 0) return Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d first_from_frame =
+      camera_path_.At(0).GroundFromPixel().inverse() * camera_path_.At(frame).GroundFromPixel();
+  return first_from_frame / first_from_frame(2, 2);
+}
+
 FrameTruth Renderer::Truth(int frame) const {
   const Camera camera = camera_path_.At(frame);
   FrameTruth truth;
-  truth.first_from_frame =
-      camera_path_.At(0).GroundFromPixel().inverse() * camera.GroundFromPixel();
-  truth.first_from_frame /= truth.first_from_frame(2, 2);
-  if (frame == 0) truth.first_from_frame.setIdentity();
+  truth.first_from_frame = TrueHomography(frame);
   const std::vector<DrawnVehicle> vehicles = VehiclesAt(frame);
   View view(plan_.width, plan_.height);
   view.Draw(*terrain_, camera, scene_.sun, vehicles, 0, 0, 0);

@@ -48,6 +48,8 @@ class Renderer {
   // Thread-safe. `frame` from 0 to plan().frames - 1; CV_8UC3, blue first.
   cv::Mat Frame(int frame) const;
   FrameTruth Truth(int frame) const;
+  // FrameTruth::first_from_frame alone, which takes no time.
+  Eigen::Matrix3d TrueHomography(int frame) const;
 
   // Share of the pixels of `frame` whose picture `gap` frames later is more than `px` away from
   // where the ground's homography puts them, vehicles that move left out. For guarding the

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/benchmarks/pipeline_run.h"
+
+#include <gst/app/gstappsrc.h>
+#include <gst/gst.h>
+#include <gst/video/video.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+namespace windhover::replay {
+namespace {
+
+template <auto Release>
+struct Releaser {
+  template <typename T>
+  void operator()(T* object) const {
+    Release(object);
+  }
+};
+template <typename T>
+using ObjectPtr = std::unique_ptr<T, Releaser<gst_object_unref>>;
+
+bool IsKnown(const char* element) {
+  const ObjectPtr<GstElementFactory> factory(gst_element_factory_find(element));
+  return factory != nullptr;
+}
+
+void FindElements() {
+  gst_init(nullptr, nullptr);
+  if (IsKnown("whregister")) return;
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path folder =
+      program.parent_path().parent_path() / "lib" / "gstreamer-1.0";
+  if (!error) gst_registry_scan_path(gst_registry_get(), folder.c_str());
+  if (!IsKnown("whregister")) {
+    throw std::runtime_error(
+        "GStreamer does not know whregister: set GST_PLUGIN_PATH to the folder of "
+        "libgstwindhover.so");
+  }
+}
+
+void SetProperties(GstElement* pipeline, const PipelineSettings& settings) {
+  GstIterator* elements = gst_bin_iterate_elements(GST_BIN(pipeline));
+  const auto set = [](const GValue* item, gpointer data) {
+    auto* element = static_cast<GObject*>(g_value_get_object(item));
+    // The queues and ends have properties of their own that may bear the same names.
+    const GstElementFactory* factory = gst_element_get_factory(GST_ELEMENT(element));
+    if (!g_str_has_prefix(GST_OBJECT_NAME(factory), "wh")) return;
+    for (const auto& [name, value] : static_cast<const PipelineSettings*>(data)->properties) {
+      const GParamSpec* spec =
+          g_object_class_find_property(G_OBJECT_GET_CLASS(element), name.c_str());
+      if (spec == nullptr) continue;
+      if (spec->value_type == G_TYPE_STRING) {
+        g_object_set(element, name.c_str(), value.c_str(), nullptr);
+      } else {
+        gst_util_set_object_arg(element, name.c_str(), value.c_str());
+      }
+    }
+  };
+  gst_iterator_foreach(elements, set, const_cast<PipelineSettings*>(&settings));
+  gst_iterator_free(elements);
+}
+
+// The planes of I420 as GStreamer lays them out, which may pad rows.
+GstBuffer* MakeBuffer(const cv::Mat& frame, const GstVideoInfo& info) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, GST_VIDEO_INFO_SIZE(&info), nullptr);
+  GstMapInfo map;
+  gst_buffer_map(buffer, &map, GST_MAP_WRITE);
+  const std::uint8_t* from = frame.ptr();
+  for (int plane = 0; plane < 3; ++plane) {
+    const int width = GST_VIDEO_INFO_COMP_WIDTH(&info, plane);
+    for (int y = 0; y < GST_VIDEO_INFO_COMP_HEIGHT(&info, plane); ++y, from += width) {
+      std::memcpy(map.data + GST_VIDEO_INFO_PLANE_OFFSET(&info, plane) +
+                      static_cast<std::size_t>(y) * GST_VIDEO_INFO_PLANE_STRIDE(&info, plane),
+                  from, width);
+    }
+  }
+  gst_buffer_unmap(buffer, &map);
+  return buffer;
+}
+
+ObjectPtr<GstElement> BuildPipeline(const PipelineSettings& settings) {
+  const std::string text =
+      "appsrc name=source format=time block=true max-buffers=4 max-bytes=0 ! " + settings.elements +
+      " ! fakesink name=sink sync=false";
+  GError* error = nullptr;
+  ObjectPtr<GstElement> pipeline(gst_parse_launch(text.c_str(), &error));
+  if (error != nullptr) {
+    const std::string message = error->message;
+    g_error_free(error);
+    throw std::runtime_error(message);
+  }
+  SetProperties(pipeline.get(), settings);
+  return pipeline;
+}
+
+void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double frame_rate_hz) {
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_I420, frames.front().cols,
+                            frames.front().rows * 2 / 3);
+  info.fps_n = static_cast<int>(std::lround(frame_rate_hz * 1000));
+  info.fps_d = 1000;
+  GstCaps* caps = gst_video_info_to_caps(&info);
+  gst_app_src_set_caps(GST_APP_SRC(source), caps);
+  gst_caps_unref(caps);
+  const auto duration = static_cast<GstClockTime>(std::llround(GST_SECOND / frame_rate_hz));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    GstBuffer* buffer = MakeBuffer(frames[i], info);
+    GST_BUFFER_PTS(buffer) = i * duration;
+    GST_BUFFER_DURATION(buffer) = duration;
+    if (gst_app_src_push_buffer(GST_APP_SRC(source), buffer) != GST_FLOW_OK) return;
+  }
+  gst_app_src_end_of_stream(GST_APP_SRC(source));
+}
+
+// Waits for the end of the stream; throws what an element reports.
+void AwaitEnd(GstElement* pipeline) {
+  const ObjectPtr<GstBus> bus(gst_element_get_bus(pipeline));
+  GstMessage* message =
+      gst_bus_timed_pop_filtered(bus.get(), GST_CLOCK_TIME_NONE,
+                                 static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  std::string failure;
+  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    failure = error->message;
+    g_error_free(error);
+  }
+  gst_message_unref(message);
+  if (!failure.empty()) throw std::runtime_error(failure);
+}
+
+}  // namespace
+
+std::vector<Clock::time_point> PlayThroughPipeline(const std::vector<cv::Mat>& frames,
+                                                   double frame_rate_hz,
+                                                   const PipelineSettings& settings) {
+  FindElements();
+  std::vector<Clock::time_point> left;
+  left.reserve(frames.size());
+  const ObjectPtr<GstElement> pipeline = BuildPipeline(settings);
+  const ObjectPtr<GstElement> source(gst_bin_get_by_name(GST_BIN(pipeline.get()), "source"));
+  const ObjectPtr<GstElement> sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "sink"));
+  GstPad* pad = gst_element_get_static_pad(sink.get(), "sink");
+  // Runs on one streaming thread; read only after the pipeline has stopped.
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo*, gpointer data) {
+        static_cast<std::vector<Clock::time_point>*>(data)->push_back(Clock::now());
+        return GST_PAD_PROBE_OK;
+      },
+      &left, nullptr);
+  gst_object_unref(pad);
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  std::string failure;
+  try {
+    PushFrames(source.get(), frames, frame_rate_hz);
+    AwaitEnd(pipeline.get());
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  if (!failure.empty()) throw std::runtime_error("the pipeline failed: " + failure);
+  return left;
+}
+
+}  // namespace windhover::replay

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "replay/benchmarks/timing.h"
+
+namespace windhover::replay {
+
+// Elements of one pipeline and how they are set, e.g. {"reference", "centre"}; a setting goes to
+// every element that has a property of that name.
+struct PipelineSettings {
+  std::string elements;  // in gst-launch's syntax, from after the source to before the sink
+  std::vector<std::pair<std::string, std::string>> properties;
+};
+
+// Plays frames that lie in memory through a GStreamer pipeline as fast as it takes them, and
+// returns when each one left it. `frames` are I420 as cv::cvtColor makes it (CV_8UC1, 1.5 times the
+// height), of even width and height. The elements come from GStreamer's registry; where they are
+// not known, from lib/gstreamer-1.0 beside the program's bin folder. Throws std::runtime_error
+// where the pipeline cannot be built or fails.
+std::vector<Clock::time_point> PlayThroughPipeline(const std::vector<cv::Mat>& frames,
+                                                   double frame_rate_hz,
+                                                   const PipelineSettings& settings);
+
+}  // namespace windhover::replay

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "replay/render/flight_plan.h"
+
+namespace windhover::replay {
+
+// One measured number. Names are stable, so that scripts can hold figures against goals; see
+// README.md beside this file.
+struct Figure {
+  std::string name;
+  double value = 0;
+  std::string unit;
+};
+
+struct SpeedBenchmarkSettings {
+  FlightPlan plan;          // what is played; each frame once a round
+  int rounds = 3;           // in each of which every contestant runs once
+  int centre_frames = 120;  // at most, through the pipeline in centre mode, which is slow
+  int threads = 1;          // for rendering
+};
+
+struct SpeedContestant {
+  std::string name;      // "registration anchor, CPU twin"
+  double fps = 0;        // from the median time a frame
+  double median_ms = 0;  // a frame, over all rounds
+  double p95_ms = 0;
+  double rms_px = 0;  // mean over consecutive frames; registration only
+  int frames = 0;     // that were measured
+};
+
+struct SpeedBenchmarkResult {
+  std::vector<SpeedContestant> contestants;
+  std::vector<Figure> figures;
+  std::string opencl_device;  // empty where there is none: its figures are absent
+};
+
+// Registration alone and the whole pipeline (whregister ! whbackground ! whmotion), on the CPU twin
+// and on the best OpenCL device, in anchor and in centre mode, against KLT. All take part in turns
+// in each round, so that whatever else the machine does meets all of them. Frames are rendered and
+// decoded before; each round's first frames (compilation, filling windows) are not counted. `say`
+// takes a line of progress.
+SpeedBenchmarkResult RunSpeedBenchmark(const SpeedBenchmarkSettings& settings,
+                                       const std::function<void(const std::string&)>& say);
+
+}  // namespace windhover::replay

@@ -40,7 +40,7 @@ MAY_INCLUDE = {
 BELONGS_TO = {
     "CL/": ("gpu-kernels/opencl/",),
     "fftw3.h": ("gpu-kernels/", "tests/gpu-kernels/"),
-    "gst/": ("gst-plugins/", "service/app/", "tests/"),
+    "gst/": ("gst-plugins/", "service/app/", "replay/benchmarks/", "tests/"),
     "dds/": ("service/dds/", "tests/"),
     "idl/": ("service/dds/", "tests/"),
     "CLI/": ("service/app/", "replay/", "tests/"),

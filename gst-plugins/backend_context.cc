@@ -13,12 +13,21 @@ using BoxedBackend = std::shared_ptr<Backend>;
 gpointer CopyBoxed(gpointer boxed) { return new BoxedBackend(*static_cast<BoxedBackend*>(boxed)); }
 void FreeBoxed(gpointer boxed) { delete static_cast<BoxedBackend*>(boxed); }
 
+// For people who watch the bus.
+void DescribeBoxed(const GValue* boxed, GValue* text) {
+  const auto* backend = static_cast<const BoxedBackend*>(g_value_get_boxed(boxed));
+  const bool exists = backend != nullptr && *backend != nullptr;
+  g_value_set_string(text, exists ? (*backend)->device().Describe().c_str() : "none");
+}
+
 // Several modules of one process may hold this code: whichever comes first registers the type.
 GType BoxedBackendType() {
   static const GType type = [] {
-    const GType known = g_type_from_name("GstWindhoverBackend");
-    return known != 0 ? known
-                      : g_boxed_type_register_static("GstWindhoverBackend", CopyBoxed, FreeBoxed);
+    constexpr char kName[] = "GstWindhoverBackend";
+    if (const GType known = g_type_from_name(kName)) return known;
+    const GType made = g_boxed_type_register_static(kName, CopyBoxed, FreeBoxed);
+    g_value_register_transform_func(made, G_TYPE_STRING, DescribeBoxed);
+    return made;
   }();
   return type;
 }

@@ -44,20 +44,27 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   });
 }
 
+bool Configure(ElementHost* host, GstCaps* caps) {
+  return Guarded(host, false, [&] {
+    GstVideoInfo info;
+    if (!gst_video_info_from_caps(&info, caps)) return false;
+    host->element->Drain();
+    gst_caps_replace(&host->caps, nullptr);
+    host->element->Configure(info);
+    gst_caps_replace(&host->caps, caps);
+    return true;
+  });
+}
+
 gboolean HandleCaps(ElementHost* host, GstEvent* event) {
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
-  const bool configured =
-      (host->caps != nullptr && gst_caps_is_equal(host->caps, caps)) || Guarded(host, false, [&] {
-        GstVideoInfo info;
-        if (!gst_video_info_from_caps(&info, caps)) return false;
-        host->element->Drain();
-        gst_caps_replace(&host->caps, nullptr);
-        host->element->Configure(info);
-        gst_caps_replace(&host->caps, caps);
-        return true;
-      });
-  if (configured) return gst_pad_push_event(host->source, event);
+  const auto are = [caps](GstCaps* known) {
+    return known != nullptr && gst_caps_is_equal(known, caps);
+  };
+  const bool accepted = are(host->caps) || (!are(host->refused_caps) && Configure(host, caps));
+  gst_caps_replace(&host->refused_caps, accepted ? nullptr : caps);
+  if (accepted) return gst_pad_push_event(host->source, event);
   gst_event_unref(event);
   return FALSE;
 }
@@ -178,6 +185,7 @@ GstStateChangeReturn ChangeState(GstElement* object, GstStateChange transition) 
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
       element->Stop();
       gst_caps_replace(&host->caps, nullptr);
+      gst_caps_replace(&host->refused_caps, nullptr);
       gst_segment_init(&host->segment, GST_FORMAT_UNDEFINED);
     }
     if (transition == GST_STATE_CHANGE_READY_TO_NULL) element->Close();
@@ -209,6 +217,7 @@ void FinalizeHost(GObject* object) {
   ElementHost* host = HostOf(object);
   delete host->element;
   gst_caps_replace(&host->caps, nullptr);
+  gst_caps_replace(&host->refused_caps, nullptr);
   G_OBJECT_CLASS(ParentClass())->finalize(object);
 }
 

@@ -120,7 +120,8 @@ struct ElementHost {
   GstPad* source;
   Element* element;
   // Of the streaming thread.
-  GstCaps* caps;  // null until caps have been accepted
+  GstCaps* caps;          // null until caps have been accepted
+  GstCaps* refused_caps;  // offered again with each event or frame, but reported once
   GstSegment segment;
 };
 

@@ -16,21 +16,15 @@ using opencl::GlobalMemory;
 
 class DecimateOpenCl : public Decimate {
  public:
-  explicit DecimateOpenCl(opencl::Context& context)
-      : context_(context.shared_from_this()), queue_(context) {}
+  DecimateOpenCl(opencl::Context& context, const opencl::RowLayout& layout)
+      : context_(context.shared_from_this()), layout_(layout), queue_(context) {}
 
   void Run(const GrayImage& source, int factor, GrayImage& destination) override {
     CheckDecimate(source, factor, destination);
-    const std::size_t width = destination.width();
-    const std::size_t height = destination.height();
-    const opencl::WorkSize size =
-        context_->is_cpu()
-            ? opencl::WorkSize{.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}}
-            : opencl::WorkSize{
-                  .global = {opencl::RoundUp(width, 32), opencl::RoundUp(height, 4), 1},
-                  .local = {32, 4, 1}};
-    KernelFor(factor).Enqueue(queue_, size, source, static_cast<cl_int>(source.stride()),
-                              destination, destination.width(), destination.height(),
+    const int groups = (destination.width() + Lanes() - 1) / Lanes();
+    KernelFor(factor).Enqueue(queue_, layout_.Size(groups, destination.height()), source,
+                              static_cast<cl_int>(source.stride()), destination,
+                              destination.width(), destination.height(),
                               static_cast<cl_int>(destination.stride()));
     queue_.Finish();
   }
@@ -38,12 +32,14 @@ class DecimateOpenCl : public Decimate {
  private:
   using DecimateKernel = opencl::Kernel<GlobalMemory, cl_int, GlobalMemory, cl_int, cl_int, cl_int>;
 
+  int Lanes() const { return layout_.whole_rows ? 16 : 1; }
+
   // One kernel a factor, compiled when it is first asked for.
   const DecimateKernel& KernelFor(int factor) {
     std::unique_ptr<DecimateKernel>& kernel = kernels_[factor];
     if (!kernel) {
       const std::string options =
-          "-DFACTOR=" + std::to_string(factor) + (context_->is_cpu() ? " -DV=16" : " -DV=1");
+          "-DFACTOR=" + std::to_string(factor) + " -DV=" + std::to_string(Lanes());
       kernel =
           std::make_unique<DecimateKernel>(context_->Compile(kDecimateCl, options), "Decimate");
     }
@@ -51,14 +47,16 @@ class DecimateOpenCl : public Decimate {
   }
 
   const std::shared_ptr<opencl::Context> context_;
+  const opencl::RowLayout layout_;
   opencl::Queue queue_;
   std::array<std::unique_ptr<DecimateKernel>, kMaxDecimation + 1> kernels_;
 };
 
 }  // namespace
 
-std::unique_ptr<Decimate> MakeDecimateOpenCl(opencl::Context& context) {
-  return std::make_unique<DecimateOpenCl>(context);
+std::unique_ptr<Decimate> MakeDecimateOpenCl(opencl::Context& context,
+                                             const opencl::RowLayout& layout) {
+  return std::make_unique<DecimateOpenCl>(context, layout);
 }
 
 }  // namespace windhover

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu-kernels/difference_threshold/difference_threshold_opencl.h"
 
+#include <algorithm>
 #include <string>
 
 #include "gpu-kernels/difference_threshold/difference_threshold_check.h"
@@ -14,8 +15,8 @@ using opencl::GlobalMemory;
 
 class DifferenceThresholdOpenCl : public DifferenceThreshold {
  public:
-  explicit DifferenceThresholdOpenCl(opencl::Context& context)
-      : is_cpu_(context.is_cpu()),
+  DifferenceThresholdOpenCl(opencl::Context& context, const opencl::RowLayout& layout)
+      : layout_(layout),
         queue_(context),
         plain_(Compile(context, "-DGRADIENT=0"), "DifferenceThreshold"),
         with_gradient_(Compile(context, "-DGRADIENT=1"), "DifferenceThreshold") {}
@@ -24,15 +25,9 @@ class DifferenceThresholdOpenCl : public DifferenceThreshold {
            const DifferenceThresholdSettings& settings, BitImage& seeds) override {
     CheckDifferenceThreshold(frame, background, settings, seeds);
     const int gain_64ths = GainIn64ths(settings);
-    const std::size_t words = seeds.words.width();
-    const std::size_t height = frame.height();
-    const opencl::WorkSize size =
-        is_cpu_
-            ? opencl::WorkSize{.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}}
-            : opencl::WorkSize{.global = {opencl::RoundUp(words, 8), opencl::RoundUp(height, 8), 1},
-                               .local = {8, 8, 1}};
     (gain_64ths == 0 ? plain_ : with_gradient_)
-        .Enqueue(queue_, size, frame, static_cast<cl_int>(frame.stride()), background,
+        .Enqueue(queue_, layout_.Size(seeds.words.width(), frame.height()), frame,
+                 static_cast<cl_int>(frame.stride()), background,
                  static_cast<cl_int>(background.stride()), frame.width(), frame.height(),
                  settings.threshold, gain_64ths, seeds.words,
                  static_cast<cl_int>(seeds.words.stride()));
@@ -43,18 +38,13 @@ class DifferenceThresholdOpenCl : public DifferenceThreshold {
   using ThresholdKernel = opencl::Kernel<GlobalMemory, cl_int, GlobalMemory, cl_int, cl_int, cl_int,
                                          cl_int, cl_int, GlobalMemory, cl_int>;
 
-  static opencl::Program Compile(opencl::Context& context, const std::string& options) {
-    if (context.is_cpu()) {
-      try {
-        return context.Compile(kDifferenceThresholdCl, options + " -DV=64");
-      } catch (const DeviceError&) {
-        // A compiler without vectors wider than OpenCL's.
-      }
-    }
-    return context.Compile(kDifferenceThresholdCl, options + " -DV=16");
+  opencl::Program Compile(opencl::Context& context, const std::string& options) const {
+    // The kernel has no narrower vectors: a word takes 32 pixels in any case.
+    return opencl::CompileForByteLanes(context, kDifferenceThresholdCl, options,
+                                       std::max(layout_.byte_lanes, 16));
   }
 
-  const bool is_cpu_;
+  const opencl::RowLayout layout_;
   opencl::Queue queue_;
   ThresholdKernel plain_;
   ThresholdKernel with_gradient_;
@@ -62,8 +52,9 @@ class DifferenceThresholdOpenCl : public DifferenceThreshold {
 
 }  // namespace
 
-std::unique_ptr<DifferenceThreshold> MakeDifferenceThresholdOpenCl(opencl::Context& context) {
-  return std::make_unique<DifferenceThresholdOpenCl>(context);
+std::unique_ptr<DifferenceThreshold> MakeDifferenceThresholdOpenCl(
+    opencl::Context& context, const opencl::RowLayout& layout) {
+  return std::make_unique<DifferenceThresholdOpenCl>(context, layout);
 }
 
 }  // namespace windhover

@@ -11,6 +11,7 @@
 #include "gpu-kernels/decimate/decimate_opencl.h"
 #include "gpu-kernels/difference_threshold/difference_threshold_opencl.h"
 #include "gpu-kernels/opencl/context.h"
+#include "gpu-kernels/opencl/row_layout.h"
 #include "gpu-kernels/phase_correlation/phase_correlation_opencl.h"
 #include "gpu-kernels/temporal_median/temporal_median_opencl.h"
 #include "gpu-kernels/warp/warp_opencl.h"
@@ -34,23 +35,26 @@ class OpenClBackend : public Backend {
     return context_->Allocate(size_bytes);
   }
 
-  std::unique_ptr<Decimate> MakeDecimate() override { return MakeDecimateOpenCl(*context_); }
+  std::unique_ptr<Decimate> MakeDecimate() override {
+    return MakeDecimateOpenCl(*context_, layout_);
+  }
   std::unique_ptr<DifferenceThreshold> MakeDifferenceThreshold() override {
-    return MakeDifferenceThresholdOpenCl(*context_);
+    return MakeDifferenceThresholdOpenCl(*context_, layout_);
   }
   std::unique_ptr<PhaseCorrelation> MakePhaseCorrelation(
       const PhaseCorrelationSettings& settings) override {
     return MakePhaseCorrelationOpenCl(*context_, settings, PhaseCorrelationLayout::For(*context_));
   }
   std::unique_ptr<TemporalMedian> MakeTemporalMedian() override {
-    return MakeTemporalMedianOpenCl(*context_);
+    return MakeTemporalMedianOpenCl(*context_, layout_);
   }
-  std::unique_ptr<Warp> MakeWarp() override { return MakeWarpOpenCl(*context_); }
+  std::unique_ptr<Warp> MakeWarp() override { return MakeWarpOpenCl(*context_, layout_); }
 
   void WarmUp(const std::function<void(const std::string&)>& progress) override;
 
  private:
-  std::shared_ptr<Context> context_;
+  const std::shared_ptr<Context> context_;
+  const RowLayout layout_ = RowLayout::For(*context_);
 };
 
 // Runs each operator once, as drivers may put off compiling until then.

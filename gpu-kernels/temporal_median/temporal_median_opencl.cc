@@ -47,8 +47,9 @@ class MedianOfSlots {
 
 class TemporalMedianOpenCl : public TemporalMedian {
  public:
-  explicit TemporalMedianOpenCl(opencl::Context& context)
+  TemporalMedianOpenCl(opencl::Context& context, const opencl::RowLayout& layout)
       : context_(context.shared_from_this()),
+        layout_(layout),
         queue_(context),
         few_(Compile(32)),
         many_(Compile(96)),
@@ -63,7 +64,8 @@ class TemporalMedianOpenCl : public TemporalMedian {
       std::memset(out.data(), 0, out.stride() * out.height());
       return;
     }
-    const opencl::WorkSize size = WorkSizeOf(median);
+    const int groups = (median.width() + layout_.byte_lanes - 1) / layout_.byte_lanes;
+    const opencl::WorkSize size = layout_.Size(groups, median.height());
     const auto stride = static_cast<cl_int>(frames[0]->stride());
     bool same_stride = true;
     for (const GrayImage* frame : frames) same_stride &= frame->stride() == stride;
@@ -104,31 +106,13 @@ class TemporalMedianOpenCl : public TemporalMedian {
     return pitch;
   }
 
-  opencl::WorkSize WorkSizeOf(const GrayImage& image) const {
-    const std::size_t height = image.height();
-    if (context_->is_cpu())
-      return {.global = {1, opencl::RoundUp(height, 8), 1}, .local = {1, 8, 1}};
-    const std::size_t groups = (image.width() + kGpuLanes - 1) / kGpuLanes;
-    return {.global = {opencl::RoundUp(groups, 32), opencl::RoundUp(height, 4), 1},
-            .local = {32, 4, 1}};
+  opencl::Program Compile(int slots) const {
+    return opencl::CompileForByteLanes(*context_, kTemporalMedianCl,
+                                       "-DSLOTS=" + std::to_string(slots), layout_.byte_lanes);
   }
-
-  opencl::Program Compile(int slots) {
-    const std::string options = "-DSLOTS=" + std::to_string(slots) + " -DV=";
-    if (!context_->is_cpu()) {
-      return context_->Compile(kTemporalMedianCl, options + std::to_string(kGpuLanes));
-    }
-    try {
-      return context_->Compile(kTemporalMedianCl, options + "64");
-    } catch (const DeviceError&) {
-      // A compiler without vectors wider than OpenCL's.
-      return context_->Compile(kTemporalMedianCl, options + "16");
-    }
-  }
-
-  static constexpr int kGpuLanes = 4;
 
   const std::shared_ptr<opencl::Context> context_;
+  const opencl::RowLayout layout_;
   opencl::Queue queue_;
   MedianOfSlots<32> few_;
   MedianOfSlots<96> many_;
@@ -141,8 +125,9 @@ class TemporalMedianOpenCl : public TemporalMedian {
 
 }  // namespace
 
-std::unique_ptr<TemporalMedian> MakeTemporalMedianOpenCl(opencl::Context& context) {
-  return std::make_unique<TemporalMedianOpenCl>(context);
+std::unique_ptr<TemporalMedian> MakeTemporalMedianOpenCl(opencl::Context& context,
+                                                         const opencl::RowLayout& layout) {
+  return std::make_unique<TemporalMedianOpenCl>(context, layout);
 }
 
 }  // namespace windhover

@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "gpu-kernels/opencl/context.h"
+#include "gpu-kernels/opencl/row_layout.h"
 #include "gpu-kernels/temporal_median/temporal_median.h"
 
 namespace windhover {
 
 // Runs on the context's device. Throws DeviceError.
-std::unique_ptr<TemporalMedian> MakeTemporalMedianOpenCl(opencl::Context& context);
+std::unique_ptr<TemporalMedian> MakeTemporalMedianOpenCl(opencl::Context& context,
+                                                         const opencl::RowLayout& layout);
 
 }  // namespace windhover

@@ -4,11 +4,12 @@
 #include <memory>
 
 #include "gpu-kernels/opencl/context.h"
+#include "gpu-kernels/opencl/row_layout.h"
 #include "gpu-kernels/warp/warp.h"
 
 namespace windhover {
 
 // Runs on the context's device. Throws DeviceError.
-std::unique_ptr<Warp> MakeWarpOpenCl(opencl::Context& context);
+std::unique_ptr<Warp> MakeWarpOpenCl(opencl::Context& context, const opencl::RowLayout& layout);
 
 }  // namespace windhover

@@ -84,7 +84,7 @@ TEST_P(DecimateTest, RefusesWrongFactorsAndSizes) {
   EXPECT_NO_THROW(decimate_->Run(source, 2, half));
 }
 
-WINDHOVER_TEST_ON_ALL_BACKENDS(DecimateTest);
+WINDHOVER_TEST_ON_ALL_LAYOUTS(DecimateTest);
 
 }  // namespace
 }  // namespace windhover

@@ -125,7 +125,7 @@ TEST_P(DifferenceThresholdTest, RefusesWrongSizesAndSettings) {
   EXPECT_NO_THROW(threshold_->Run(frame, frame, {}, seeds));
 }
 
-WINDHOVER_TEST_ON_ALL_BACKENDS(DifferenceThresholdTest);
+WINDHOVER_TEST_ON_ALL_LAYOUTS(DifferenceThresholdTest);
 
 }  // namespace
 }  // namespace windhover

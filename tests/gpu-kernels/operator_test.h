@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -12,6 +13,14 @@
 #include <vector>
 
 #include "gpu-kernels/backend.h"
+#include "gpu-kernels/decimate/decimate_opencl.h"
+#include "gpu-kernels/difference_threshold/difference_threshold_opencl.h"
+#include "gpu-kernels/opencl/context.h"
+#include "gpu-kernels/opencl/device.h"
+#include "gpu-kernels/opencl/row_layout.h"
+#include "gpu-kernels/phase_correlation/phase_correlation_opencl.h"
+#include "gpu-kernels/temporal_median/temporal_median_opencl.h"
+#include "gpu-kernels/warp/warp_opencl.h"
 
 namespace windhover {
 
@@ -59,18 +68,65 @@ inline Picture ExtremePicture(PictureSize size, unsigned seed) {
   return picture;
 }
 
-// The backends that every operator is tested on. There is no other way through these tests: where
-// OpenCL has no device, the tests of that backend fail.
+// The first OpenCL device there is.
+inline opencl::Device OpenClDevice() {
+  const std::vector<opencl::Device> devices = opencl::ListDevices();
+  if (devices.empty()) throw std::runtime_error("there is no OpenCL device to test on");
+  return devices[0];
+}
+
+// An OpenCL device with its kernels laid out as for another kind of device.
+class LayoutBackend : public Backend {
+ public:
+  explicit LayoutBackend(const opencl::RowLayout& layout) : layout_(layout) {}
+
+  const DeviceInfo& device() const override { return context_->device(); }
+  std::unique_ptr<Memory> Allocate(std::size_t size_bytes) override {
+    return context_->Allocate(size_bytes);
+  }
+  std::unique_ptr<Decimate> MakeDecimate() override {
+    return MakeDecimateOpenCl(*context_, layout_);
+  }
+  std::unique_ptr<DifferenceThreshold> MakeDifferenceThreshold() override {
+    return MakeDifferenceThresholdOpenCl(*context_, layout_);
+  }
+  std::unique_ptr<PhaseCorrelation> MakePhaseCorrelation(
+      const PhaseCorrelationSettings& settings) override {
+    return MakePhaseCorrelationOpenCl(*context_, settings, {});
+  }
+  std::unique_ptr<TemporalMedian> MakeTemporalMedian() override {
+    return MakeTemporalMedianOpenCl(*context_, layout_);
+  }
+  std::unique_ptr<Warp> MakeWarp() override { return MakeWarpOpenCl(*context_, layout_); }
+  void WarmUp(const std::function<void(const std::string&)>&) override {}
+
+ private:
+  const opencl::RowLayout layout_;
+  const std::shared_ptr<opencl::Context> context_ =
+      std::make_shared<opencl::Context>(OpenClDevice(), opencl::ProgramCache({}));
+};
+
+// The backends that every operator is tested on:
+//   CpuTwin
+//   OpenCl           the first OpenCL device
+//   OpenClStandard   that device with vectors of no more than OpenCL's 16 elements
+//   OpenClGpu        that device with kernels laid out as for a GPU
+// There is no other way through these tests: where OpenCL has no device, they fail.
 inline std::shared_ptr<Backend> BackendNamed(const std::string& name) {
-  static const std::shared_ptr<Backend> cpu = Backend::Create("cpu");
-  if (name == "CpuTwin") return cpu;
-  static const std::shared_ptr<Backend> open_cl = [] {
-    for (const DeviceInfo& device : Backend::Devices()) {
-      if (device.kind != DeviceKind::kCpuTwin) return Backend::Create(device.Selector());
-    }
-    throw std::runtime_error("there is no OpenCL device to test on");
-  }();
-  return open_cl;
+  static std::map<std::string, std::shared_ptr<Backend>> backends;
+  std::shared_ptr<Backend>& backend = backends[name];
+  if (backend) return backend;
+  if (name == "CpuTwin") {
+    backend = Backend::Create("cpu");
+  } else if (name == "OpenCl") {
+    backend = Backend::Create(OpenClDevice().info.Selector());
+  } else if (name == "OpenClStandard") {
+    backend = std::make_shared<LayoutBackend>(
+        opencl::RowLayout{.byte_lanes = 16, .float_lanes = 4, .whole_rows = true});
+  } else {
+    backend = std::make_shared<LayoutBackend>(opencl::RowLayout{});
+  }
+  return backend;
 }
 
 class OperatorTest : public testing::TestWithParam<std::string> {
@@ -114,6 +170,12 @@ inline std::string BackendTestName(const testing::TestParamInfo<std::string>& in
 
 #define WINDHOVER_TEST_ON_ALL_BACKENDS(suite) \
   INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::Values("CpuTwin", "OpenCl"), BackendTestName)
+
+// Also for all layouts of the kernels that go through a picture row by row.
+#define WINDHOVER_TEST_ON_ALL_LAYOUTS(suite)                                                    \
+  INSTANTIATE_TEST_SUITE_P(Backends, suite,                                                     \
+                           testing::Values("CpuTwin", "OpenCl", "OpenClStandard", "OpenClGpu"), \
+                           BackendTestName)
 
 // The first difference of two pictures, for the message of a failed test.
 inline testing::AssertionResult SamePicture(const Picture& actual, const Picture& expected) {

@@ -120,7 +120,7 @@ TEST_P(TemporalMedianTest, RefusesWrongSizesAndCounts) {
                std::invalid_argument);
 }
 
-WINDHOVER_TEST_ON_ALL_BACKENDS(TemporalMedianTest);
+WINDHOVER_TEST_ON_ALL_LAYOUTS(TemporalMedianTest);
 
 }  // namespace
 }  // namespace windhover

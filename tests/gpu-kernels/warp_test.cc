@@ -216,7 +216,7 @@ TEST_P(WarpTest, RefusesMatricesThatAreNotFiniteAndEmptyImages) {
   EXPECT_THROW(warp_->Run(result, kIdentity3, result), std::invalid_argument);
 }
 
-WINDHOVER_TEST_ON_ALL_BACKENDS(WarpTest);
+WINDHOVER_TEST_ON_ALL_LAYOUTS(WarpTest);
 
 }  // namespace
 }  // namespace windhover

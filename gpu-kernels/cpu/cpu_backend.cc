@@ -16,6 +16,8 @@ namespace windhover {
 namespace {
 
 constexpr std::align_val_t kAlignment{64};
+// More is a mistake, which sanitized allocators end the program for.
+constexpr std::size_t kMaxBytes = std::size_t{1} << 38;
 
 class HostMemory : public Memory {
  public:
@@ -39,6 +41,7 @@ class CpuBackend : public Backend {
   std::unique_ptr<Memory> Allocate(std::size_t size_bytes) override {
     if (size_bytes == 0) throw std::invalid_argument("memory of 0 bytes asked for");
     try {
+      if (size_bytes > kMaxBytes) throw std::bad_alloc();
       return std::make_unique<HostMemory>(size_bytes);
     } catch (const std::bad_alloc&) {
       throw DeviceError("CPU twin: no memory for " + std::to_string(size_bytes) + " bytes");

@@ -42,9 +42,9 @@ struct DeviceInfo {
 };
 
 // Makes images and the operators that work on them, all on one device, chosen once. Thread-safe;
-// what it makes is not: an operator or image is used by one thread at a time. Operators run to their
-// end before they return, so that results may be handed to another thread or operator at once.
-// Operators refuse (std::invalid_argument) images of the wrong size.
+// what it makes is not: an operator or image is used by one thread at a time. Operators run to
+// their end before they return, so that results may be handed to another thread or operator at
+// once. Operators refuse (std::invalid_argument) images of the wrong size.
 class Backend {
  public:
   // Receives one line of text for people, e.g. why there is no OpenCL.
@@ -90,8 +90,8 @@ class Backend {
   virtual std::unique_ptr<Warp> MakeWarp() = 0;
 
   // Compiles every kernel that the operators can need for frames of up to the usual sizes and fills
-  // the program cache; nothing to do on the CPU twin. Calls `progress` with the kernel's name before
-  // each one.
+  // the program cache; nothing to do on the CPU twin. Calls `progress` with the kernel's name
+  // before each one.
   virtual void WarmUp(const std::function<void(const std::string&)>& progress) = 0;
 };
 

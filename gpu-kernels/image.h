@@ -17,8 +17,8 @@ class Memory {
  public:
   virtual ~Memory() = default;
 
-  // The pointer is aligned to 64 bytes and valid until Unmap. Mappings for reading may nest; one for
-  // writing stands alone. Throws DeviceError.
+  // The pointer is aligned to 64 bytes and valid until Unmap. Mappings for reading may nest; one
+  // for writing stands alone. Throws DeviceError.
   virtual std::byte* Map(Access access) = 0;
   virtual void Unmap(std::byte* pointer) noexcept = 0;
 };
@@ -63,8 +63,8 @@ class MappedImage {
 };
 
 // A single-channel picture that belongs to a backend; made by Backend::MakeImage. Pixel centres lie
-// at integer coordinates, (0, 0) is the centre of the top left pixel, y points down. Rows are padded
-// to 64 bytes; what lies in the padding is unspecified. Movable, not copyable.
+// at integer coordinates, (0, 0) is the centre of the top left pixel, y points down. Rows are
+// padded to 64 bytes; what lies in the padding is unspecified. Movable, not copyable.
 //
 // In registered images the grey value 0 means "no ground seen here"; see warp/warp.h.
 template <typename T>
@@ -81,9 +81,7 @@ class Image {
 
   MappedImage<const T> Read() const { return {*memory_, Access::kRead, width_, height_, stride_}; }
   MappedImage<T> Write() { return {*memory_, Access::kWrite, width_, height_, stride_}; }
-  MappedImage<T> ReadWrite() {
-    return {*memory_, Access::kReadWrite, width_, height_, stride_};
-  }
+  MappedImage<T> ReadWrite() { return {*memory_, Access::kReadWrite, width_, height_, stride_}; }
 
   // For the operators of the backend that made the image.
   Memory& memory() const { return *memory_; }
@@ -97,8 +95,8 @@ class Image {
 
 using GrayImage = Image<std::uint8_t>;
 
-// One bit a pixel: pixel (x, y) is bit x % 32 of word (x / 32, y), least significant bit first. Bits
-// past the width are 0. `words` is an image of ceil(width / 32) x height words.
+// One bit a pixel: pixel (x, y) is bit x % 32 of word (x / 32, y), least significant bit first.
+// Bits past the width are 0. `words` is an image of ceil(width / 32) x height words.
 struct BitImage {
   Image<std::uint32_t> words;
   int width = 0;

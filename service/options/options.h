@@ -30,8 +30,8 @@ struct RegistrationOptions {
   int tile_columns = 6;
   int tile_rows = 6;
   double blackman_alpha = 0.16;
-  double peak_sigma_px = 0.8;
-  double noise_sigma = 2.0;
+  double peak_sigma_px = 1.0;
+  double noise_sigma = 4.0;
   double ransac_threshold_px = 1.0;
   double min_inlier_share = 0.4;
   double max_residual_px = 1.0;
@@ -87,12 +87,14 @@ struct BackgroundOptions {
 
 // Voting, forward-backward filter, extraction and tracks (thesis 6.5, 6.3).
 struct MotionOptions {
-  double max_speed_px = 2.5;
+  double max_speed_px = 10.0;
+  double min_speed_px = 0.6;
   double vote_share = 0.5;
   double forward_backward_margin_px = 2.0;
   int erosion_px = 0;
   int dilation_px = 2;
   int min_area_px = 12;
+  double max_size = 0.33;
   double min_travel_px = 3.0;
   int min_track_frames = 4;
   int max_coast_frames = 5;
@@ -102,6 +104,9 @@ struct MotionOptions {
     return std::make_tuple(
         Number("max-speed", &O::max_speed_px, 0.1, 50.0, "px/frame",
                "Fastest object looked for, relative to the ground"),
+        Number("min-speed", &O::min_speed_px, 0.0, 50.0, "px/frame",
+               "Slowest object looked for, relative to the ground; things that stand out of the "
+               "ground seem to move slowly as the camera does"),
         Number("vote-share", &O::vote_share, 0.0, 1.0, "",
                "Share of the window's frames that must vote for one trajectory through a seed; 0 "
                "switches the voting filter off"),
@@ -113,8 +118,12 @@ struct MotionOptions {
                "Radius of the dilation that closes the gaps inside an object"),
         Number("min-area", &O::min_area_px, 1, 100000, "px^2",
                "Smallest area of seeds that makes a detection"),
-        Number("min-travel", &O::min_travel_px, 0.0, 1000.0, "px",
-               "Way over the ground that a track must have made before it is reported"),
+        Number("max-size", &O::max_size, 0.01, 1.0, "",
+               "Longest side of a detection's box, as a share of the frame's shorter side"),
+        Number(
+            "min-travel", &O::min_travel_px, 0.0, 1000.0, "px",
+            "Way over the ground that a track must have made before it is reported, and a quarter "
+            "of its box's shorter side at least; 0 asks for none"),
         Number("min-track-frames", &O::min_track_frames, 1, 100, "frames",
                "Detections that a track must have had before it is reported"),
         Number("max-coast-frames", &O::max_coast_frames, 0, 100, "frames",

@@ -11,45 +11,55 @@ namespace {
 constexpr int kRadius = 4;
 constexpr int kSide = 2 * kRadius + 1;
 constexpr int kArea = kSide * kSide;
-constexpr int kStepFrames = 2;
+constexpr int kMaxCellPx = ForwardBackwardFilter::kMaxCellPx;
+constexpr int kMaxAcross = (kSide + 2) * kMaxCellPx;
+// Distances from the centre frame at which a pattern is looked for, frames. Few and near: what
+// walks changes its looks.
+constexpr std::array<int, ForwardBackwardFilter::kSteps> kStepFrames = {1, 3};
 constexpr int kIterations = 12;
-constexpr float kConvergedPx = 0.02F;
-// Further from the expected place a pattern is not looked for, px.
-constexpr float kMaxCorrectionPx = 4.0F;
+constexpr float kConverged = 0.02F;
+// Further from the expected place a pattern is not looked for, cells.
+constexpr float kMaxCorrection = 4.0F;
 // Smallest eigenvalue of the patch's mean gradient tensor, (grey levels / px)^2, with which it can
 // be followed at all.
-constexpr float kMinTexture = 1.0F;
+constexpr float kMinTexture = ForwardBackwardFilter::kMinTexture;
 
-// Ground seen in all pixels that bilinear interpolation of a patch with `border` px around it
-// needs.
-bool Inside(const GrayView& image, const Eigen::Vector2f& at, int border) {
-  const float x = std::floor(at.x());
-  const float y = std::floor(at.y());
-  const auto reach = static_cast<float>(kRadius + border);
-  return x >= reach && y >= reach && x + reach + 1 < static_cast<float>(image.width) &&
-         y + reach + 1 < static_cast<float>(image.height);
-}
-
-// Samples a square of pixels around `at`, Side across, bilinearly. False where a pixel is unseen.
-template <int Side>
-bool Sample(const GrayView& image, const Eigen::Vector2f& at, float* out) {
-  const int x = static_cast<int>(std::floor(at.x()));
-  const int y = static_cast<int>(std::floor(at.y()));
-  const float fx = at.x() - static_cast<float>(x);
-  const float fy = at.y() - static_cast<float>(y);
-  const float w00 = (1 - fx) * (1 - fy);
-  const float w01 = fx * (1 - fy);
-  const float w10 = (1 - fx) * fy;
-  const float w11 = fx * fy;
+// Samples a square of `side` x `side` cells around `at`; a cell is the mean of cell_px x cell_px
+// bilinear samples one pixel apart. False where that needs pixels that are unseen or outside.
+bool Sample(const GrayView& image, const Eigen::Vector2f& at, int side, int cell_px, float* out) {
+  const int across = side * cell_px;
+  const float half = 0.5F * static_cast<float>(across - 1);
+  const float left = at.x() - half;
+  const float top = at.y() - half;
+  if (!(left >= 0 && top >= 0) || left + static_cast<float>(across) > image.width - 1.0F ||
+      top + static_cast<float>(across) > image.height - 1.0F) {
+    return false;
+  }
+  const int x = static_cast<int>(left);
+  const int y = static_cast<int>(top);
+  const float scale = 1.0F / static_cast<float>(cell_px * cell_px);
+  const float fx = left - static_cast<float>(x);
+  const float fy = top - static_cast<float>(y);
+  const float w00 = (1 - fx) * (1 - fy) * scale;
+  const float w01 = fx * (1 - fy) * scale;
+  const float w10 = (1 - fx) * fy * scale;
+  const float w11 = fx * fy * scale;
   int smallest = 255;
-  for (int j = 0; j < Side; ++j) {
-    const std::uint8_t* upper = image.row(y - Side / 2 + j) + x - Side / 2;
+  if (cell_px > 1) std::fill_n(out, side * side, 0.0F);
+  std::array<float, kMaxAcross> line;
+  for (int j = 0; j < across; ++j) {
+    const std::uint8_t* upper = image.row(y + j) + x;
     const std::uint8_t* lower = upper + image.stride;
-    for (int i = 0; i < Side; ++i) {
+    float* to = cell_px == 1 ? out + j * side : line.data();
+    for (int i = 0; i < across; ++i) {
       smallest = std::min<int>(smallest, upper[i]);
-      out[j * Side + i] =
-          w00 * static_cast<float>(upper[i]) + w01 * static_cast<float>(upper[i + 1]) +
-          w10 * static_cast<float>(lower[i]) + w11 * static_cast<float>(lower[i + 1]);
+      to[i] = w00 * static_cast<float>(upper[i]) + w01 * static_cast<float>(upper[i + 1]) +
+              w10 * static_cast<float>(lower[i]) + w11 * static_cast<float>(lower[i + 1]);
+    }
+    if (cell_px == 1) continue;
+    float* cells = out + j / cell_px * side;
+    for (int i = 0; i < side; ++i) {
+      for (int k = 0; k < cell_px; ++k) cells[i] += line[i * cell_px + k];
     }
   }
   return smallest > 0;
@@ -57,51 +67,72 @@ bool Sample(const GrayView& image, const Eigen::Vector2f& at, float* out) {
 
 struct Pattern {
   std::array<float, kArea> value;
+  // Gradients with their weighted mean taken out, times the weights.
   std::array<float, kArea> dx;
   std::array<float, kArea> dy;
-  float mean = 0;
   Eigen::Matrix2f inverse_tensor;
+  float texture = 0;
 };
 
 enum class Found { kYes, kNo, kUnseen };
 
-Found TakePattern(const GrayView& image, const Eigen::Vector2f& at, Pattern& pattern) {
+// Sets the weights of a pattern's cells: 1 on seeds and next to them, 0 elsewhere.
+void WeighBySeeds(const BitView& seeds, const Eigen::Vector2f& at, int cell_px, float* weight) {
+  const auto centre_of = [&](float middle, int cell) {
+    return static_cast<int>(std::lround(middle + static_cast<float>((cell - kRadius) * cell_px)));
+  };
+  const int reach = (cell_px + 1) / 2;
+  for (int j = 0; j < kSide; ++j) {
+    const int y = centre_of(at.y(), j);
+    for (int i = 0; i < kSide; ++i) {
+      const int x = centre_of(at.x(), i);
+      std::uint64_t any = 0;
+      for (int dy = -reach; dy <= reach; ++dy) any |= seeds.Read(x - reach, y + dy);
+      any &= (std::uint64_t{2} << (2 * reach)) - 1;
+      weight[j * kSide + i] = any != 0 ? 1.0F : 0.0F;
+    }
+  }
+}
+
+Found TakePattern(const WindowSample& sample, const Eigen::Vector2f& at, int cell_px,
+                  Pattern& pattern) {
   constexpr int kWide = kSide + 2;
   std::array<float, kWide * kWide> wide;
-  if (!Inside(image, at, 1) || !Sample<kWide>(image, at, wide.data())) return Found::kUnseen;
+  pattern.texture = 0;
+  if (!Sample(sample.registered, at, kWide, cell_px, wide.data())) return Found::kUnseen;
+  std::array<float, kArea> weight;
+  WeighBySeeds(sample.seeds, at, cell_px, weight.data());
   float sum = 0;
-  float xx = 0;
-  float xy = 0;
-  float yy = 0;
   float sum_x = 0;
   float sum_y = 0;
   for (int j = 0; j < kSide; ++j) {
     for (int i = 0; i < kSide; ++i) {
+      const int to = j * kSide + i;
       const float* p = &wide[(j + 1) * kWide + i + 1];
-      const float dx = 0.5F * (p[1] - p[-1]);
-      const float dy = 0.5F * (p[kWide] - p[-kWide]);
-      pattern.value[j * kSide + i] = *p;
-      pattern.dx[j * kSide + i] = dx;
-      pattern.dy[j * kSide + i] = dy;
-      sum += *p;
-      sum_x += dx;
-      sum_y += dy;
-      xx += dx * dx;
-      xy += dx * dy;
-      yy += dy * dy;
+      pattern.value[to] = *p;
+      pattern.dx[to] = 0.5F * (p[1] - p[-1]);
+      pattern.dy[to] = 0.5F * (p[kWide] - p[-kWide]);
+      sum += weight[to];
+      sum_x += weight[to] * pattern.dx[to];
+      sum_y += weight[to] * pattern.dy[to];
     }
   }
-  pattern.mean = sum / kArea;
-  xx -= sum_x * sum_x / kArea;
-  xy -= sum_x * sum_y / kArea;
-  yy -= sum_y * sum_y / kArea;
+  if (sum == 0) return Found::kNo;
+  float xx = 0;
+  float xy = 0;
+  float yy = 0;
   for (int i = 0; i < kArea; ++i) {
-    pattern.value[i] -= pattern.mean;
-    pattern.dx[i] -= sum_x / kArea;
-    pattern.dy[i] -= sum_y / kArea;
+    const float dx = pattern.dx[i] - sum_x / sum;
+    const float dy = pattern.dy[i] - sum_y / sum;
+    pattern.dx[i] = weight[i] * dx;
+    pattern.dy[i] = weight[i] * dy;
+    xx += weight[i] * dx * dx;
+    xy += weight[i] * dx * dy;
+    yy += weight[i] * dy * dy;
   }
   const float smaller = 0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4 * xy * xy));
-  if (smaller < kMinTexture * kArea) return Found::kNo;
+  pattern.texture = smaller / kArea;
+  if (pattern.texture < kMinTexture) return Found::kNo;
   pattern.inverse_tensor << yy, -xy, -xy, xx;
   pattern.inverse_tensor /= xx * yy - xy * xy;
   return Found::kYes;
@@ -109,11 +140,13 @@ Found TakePattern(const GrayView& image, const Eigen::Vector2f& at, Pattern& pat
 
 // Moves `at` to where `image` shows the pattern; inverse compositional Lucas-Kanade. The pattern's
 // gradients have no mean, so that a difference in brightness does not pull.
-Found FindPattern(const Pattern& pattern, const GrayView& image, Eigen::Vector2f& at) {
+Found FindPattern(const Pattern& pattern, const GrayView& image, int cell_px, Eigen::Vector2f& at) {
+  const float max_correction = kMaxCorrection * static_cast<float>(cell_px);
+  const float converged = kConverged * static_cast<float>(cell_px);
   const Eigen::Vector2f expected = at;
   std::array<float, kArea> value;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    if (!Inside(image, at, 0) || !Sample<kSide>(image, at, value.data())) return Found::kUnseen;
+    if (!Sample(image, at, kSide, cell_px, value.data())) return Found::kUnseen;
     float x = 0;
     float y = 0;
     for (int i = 0; i < kArea; ++i) {
@@ -121,10 +154,11 @@ Found FindPattern(const Pattern& pattern, const GrayView& image, Eigen::Vector2f
       x += error * pattern.dx[i];
       y += error * pattern.dy[i];
     }
-    const Eigen::Vector2f step = pattern.inverse_tensor * Eigen::Vector2f(x, y);
+    const Eigen::Vector2f step =
+        pattern.inverse_tensor * Eigen::Vector2f(x, y) * static_cast<float>(cell_px);
     at -= step;
-    if (!((at - expected).squaredNorm() < kMaxCorrectionPx * kMaxCorrectionPx)) return Found::kNo;
-    if (step.squaredNorm() < kConvergedPx * kConvergedPx) return Found::kYes;
+    if (!((at - expected).squaredNorm() < max_correction * max_correction)) return Found::kNo;
+    if (step.squaredNorm() < converged * converged) return Found::kYes;
   }
   return Found::kYes;
 }
@@ -139,34 +173,34 @@ void ForwardBackwardFilter::SetWindow(std::span<const WindowSample> window, std:
   ways_ = {ChooseWay(-1), ChooseWay(1)};
 }
 
-// The samples next to kStepFrames, 2 kStepFrames, ... from the centre.
+// The nearest samples that are at least kStepFrames away.
 ForwardBackwardFilter::Way ForwardBackwardFilter::ChooseWay(int direction) const {
   Way way;
-  int next = kStepFrames;
   for (auto i = static_cast<std::ptrdiff_t>(centre_) + direction;
        i >= 0 && i < std::ssize(window_) && way.count < kSteps; i += direction) {
-    if (std::abs(window_[i].offset_frames) < next) continue;
+    if (std::abs(window_[i].offset_frames) < kStepFrames[way.count]) continue;
     way.samples[way.count++] = static_cast<std::size_t>(i);
-    next = std::abs(window_[i].offset_frames) + kStepFrames;
   }
   return way;
 }
 
-ForwardBackwardFilter::Outcome ForwardBackwardFilter::FollowWay(
-    const Way& way, const Eigen::Vector2f& seed, const Eigen::Vector2f& velocity_px) const {
+ForwardBackwardFilter::Outcome ForwardBackwardFilter::FollowWay(const Way& way,
+                                                                const Eigen::Vector2f& seed,
+                                                                const Eigen::Vector2f& velocity_px,
+                                                                int cell_px) const {
   Outcome outcome;
   Eigen::Vector2f at = seed;
   Eigen::Vector2f velocity = velocity_px;
   std::size_t here = centre_;
   Pattern pattern;
   const auto go = [&](std::size_t there) {
-    Found found = TakePattern(window_[here].registered, at, pattern);
+    Found found = TakePattern(window_[here], at, cell_px, pattern);
     if (found != Found::kYes) return found;
     const auto frames =
         static_cast<float>(window_[there].offset_frames - window_[here].offset_frames);
     const Eigen::Vector2f from = at;
     at += frames * velocity;
-    found = FindPattern(pattern, window_[there].registered, at);
+    found = FindPattern(pattern, window_[there].registered, cell_px, at);
     velocity = (at - from) / frames;
     here = there;
     return found;
@@ -195,26 +229,32 @@ ForwardBackwardFilter::Outcome ForwardBackwardFilter::FollowWay(
   return outcome;
 }
 
-ForwardBackwardFilter::Trace ForwardBackwardFilter::Follow(
-    const Eigen::Vector2f& seed, const Eigen::Vector2f& velocity_px) const {
+float ForwardBackwardFilter::Texture(const Eigen::Vector2f& seed, int cell_px) const {
+  Pattern pattern;
+  return TakePattern(window_[centre_], seed, cell_px, pattern) == Found::kUnseen ? 0.0F
+                                                                                 : pattern.texture;
+}
+
+ForwardBackwardFilter::Trace ForwardBackwardFilter::Follow(const Eigen::Vector2f& seed,
+                                                           const Eigen::Vector2f& velocity_px,
+                                                           int cell_px) const {
   Trace trace;
-  trace.kept = true;
   Eigen::Vector2f first = seed;
   Eigen::Vector2f last = seed;
   int frames = 0;
+  int good = 0;
   for (const Way& way : ways_) {
     if (way.count == 0) continue;
-    const Outcome outcome = FollowWay(way, seed, velocity_px);
+    const Outcome outcome = FollowWay(way, seed, velocity_px, cell_px);
     if (!outcome.followed) continue;
     ++trace.directions;
-    if (!outcome.converged || !(outcome.error_px <= margin_px_)) {
-      trace.kept = false;
-      if (!outcome.converged) continue;
-    }
+    if (!outcome.converged || !(outcome.error_px <= margin_px_)) continue;
+    ++good;
     trace.error_px = std::max(trace.error_px, outcome.error_px);
     (outcome.end_offset_frames < 0 ? first : last) = outcome.end;
     frames += std::abs(outcome.end_offset_frames);
   }
+  trace.kept = trace.directions == 0 || good > 0;
   trace.velocity_px =
       frames > 0 ? Eigen::Vector2f((last - first) / static_cast<float>(frames)) : velocity_px;
   return trace;

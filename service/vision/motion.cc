@@ -2,8 +2,12 @@
 #include "service/vision/motion.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "service/vision/extraction.h"
@@ -15,10 +19,18 @@
 namespace windhover {
 namespace {
 
-// Seeds of one component that the forward-backward filter looks at, spread evenly over it.
+// Seeds so near to the border of the frame are left out, px.
+constexpr double kBorderPx = 4.0;
+// Seeds of a component among which those are chosen that the forward-backward filter looks at, and
+// how many it looks at. They are spread evenly over the component.
+constexpr int kPointsLookedAt = 16;
 constexpr int kPointsPerComponent = 5;
-// Share of them that must be kept.
-constexpr double kLeastKept = 0.5;
+// Share of the points that can be followed that must be kept.
+constexpr double kLeastKept = 0.4;
+constexpr double kUndecided = 0.5;
+// The forward-backward filter's cells grow with the component: one px for each so many px of the
+// square root of its area.
+constexpr double kSidePerCell = 12.0;
 
 TrackingSettings TrackingOf(const MotionOptions& options) {
   return {.max_speed_px = options.max_speed_px,
@@ -44,6 +56,24 @@ Box Clip(const Box& box, int width, int height) {
   return {left, top, right - left, bottom - top};
 }
 
+// Pixels first..last of row y that lie inside a convex polygon; first > last where none does.
+std::pair<int, int> InsideOnRow(std::span<const Eigen::Vector2d> corners, int y, int width) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d& a = corners[i];
+    const Eigen::Vector2d& b = corners[(i + 1) % corners.size()];
+    if (std::min(a.y(), b.y()) > y || std::max(a.y(), b.y()) < y) continue;
+    const double t = a.y() == b.y() ? 1.0 : (y - a.y()) / (b.y() - a.y());
+    const double x = a.x() + t * (b.x() - a.x());
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  if (!(low <= high)) return {0, -1};
+  return {static_cast<int>(std::ceil(std::max(low, 0.0))),
+          static_cast<int>(std::floor(std::min(high, width - 1.0)))};
+}
+
 }  // namespace
 
 struct MotionDetection::State {
@@ -56,9 +86,10 @@ struct MotionDetection::State {
 
   void MapWindow(const MotionEvidence& evidence);
   void UnmapWindow();
+  void MaskBorder(const MotionEvidence& evidence);
   void FindCandidates(const MotionEvidence& evidence);
-  bool Examine(const SeedComponent& component, MotionCandidate& candidate,
-               Eigen::Vector2d& at) const;
+  void ChoosePoints(const SeedComponent& component);
+  bool Examine(const SeedComponent& component, MotionCandidate& candidate, Eigen::Vector2d& at);
 
   MotionOptions options;
   VotingFilter voting;
@@ -71,7 +102,17 @@ struct MotionDetection::State {
   std::vector<MappedImage<const std::uint8_t>> registered;
   std::vector<WindowSample> window;
 
+  // A seed that stands for its component.
+  struct Point {
+    Eigen::Vector2f at;
+    SeedVote vote;
+    float texture = 0.0F;
+  };
+
+  BitPlane inner;
   BitPlane kept;
+  std::vector<Point> points;
+  int cell_px = 1;
   std::vector<MotionCandidate> candidates;
 };
 
@@ -109,65 +150,126 @@ void MotionDetection::State::UnmapWindow() {
 }
 
 void MotionDetection::State::FindCandidates(const MotionEvidence& evidence) {
-  const bool votes = options.vote_share > 0;
-  if (votes) voting.Run(window, evidence.centre, kept);
-  const BitView left = votes ? kept.View() : window[evidence.centre].seeds;
+  MaskBorder(evidence);
+  if (options.vote_share > 0) {
+    voting.Run(window, evidence.centre, kept);
+  } else {
+    kept = inner;
+  }
+  const BitView left = kept.View();
   const std::vector<SeedComponent>& components = extraction.Run(left, evidence.frame_from_grid);
-  if (options.forward_backward_margin_px > 0) forward_backward.SetWindow(window, evidence.centre);
+  forward_backward.SetWindow(window, evidence.centre);
 
   const auto to_frame = [&](const Eigen::Vector2d& x) -> Eigen::Vector2d {
     return (evidence.frame_from_grid * x.homogeneous()).hnormalized();
   };
+  const double max_side = options.max_size * std::min(evidence.frame_width, evidence.frame_height);
   for (const SeedComponent& component : components) {
     MotionCandidate candidate;
     Eigen::Vector2d in_grid;
-    if (!Examine(component, candidate, in_grid)) continue;
     candidate.box = Clip(component.box, evidence.frame_width, evidence.frame_height);
     if (candidate.box.width <= 0 || candidate.box.height <= 0) continue;
+    if (std::max(candidate.box.width, candidate.box.height) > max_side) continue;
+    if (!Examine(component, candidate, in_grid)) continue;
     candidate.velocity_px = to_frame(in_grid + candidate.velocity_px) - to_frame(in_grid);
     candidates.push_back(candidate);
   }
 }
 
-// Judges a component by a few of its seeds, as the forward-backward filter sees them. Sets the
-// candidate's confidence and its velocity on the grid, and where on the grid that was measured.
+// The centre frame's seeds without those along the border of that frame. The rows and columns at
+// the very border of a picture are often not of the scene: codecs and resamplers darken or repeat
+// them.
+void MotionDetection::State::MaskBorder(const MotionEvidence& evidence) {
+  WindowSample& centre = window[evidence.centre];
+  const BitView& all = centre.seeds;
+  inner.Reset(all.width, all.height);
+  const Eigen::Matrix3d grid_from_frame = evidence.frame_from_grid.inverse();
+  const double right = evidence.frame_width - 1 - kBorderPx;
+  const double bottom = evidence.frame_height - 1 - kBorderPx;
+  if (right < kBorderPx || bottom < kBorderPx) return;
+  std::array<Eigen::Vector2d, 4> corners = {
+      Eigen::Vector2d(kBorderPx, kBorderPx), Eigen::Vector2d(right, kBorderPx),
+      Eigen::Vector2d(right, bottom), Eigen::Vector2d(kBorderPx, bottom)};
+  for (Eigen::Vector2d& corner : corners) {
+    corner = (grid_from_frame * corner.homogeneous()).hnormalized();
+  }
+  for (int y = 0; y < all.height; ++y) {
+    const auto [first, last] = InsideOnRow(corners, y, all.width);
+    for (int i = std::max(first, 0) / 32; i <= last / 32 && first <= last; ++i) {
+      const int from = std::max(first - 32 * i, 0);
+      const int to = std::min(last - 32 * i, 31);
+      inner.row(y)[i] = all.row(y)[i] & (~0U << from) & (~0U >> (31 - to));
+    }
+  }
+  centre.seeds = inner.View();
+}
+
+// Judges a component by a few of its seeds. Sets the candidate's confidence and its velocity on the
+// grid, and where on the grid that was measured.
 bool MotionDetection::State::Examine(const SeedComponent& component, MotionCandidate& candidate,
-                                     Eigen::Vector2d& at) const {
-  const int points = std::min(kPointsPerComponent, component.area_px);
+                                     Eigen::Vector2d& at) {
+  const bool votes = options.vote_share > 0;
+  const bool follows = options.forward_backward_margin_px > 0;
+  ChoosePoints(component);
+  Eigen::Vector2f place = Eigen::Vector2f::Zero();
+  Eigen::Vector2f voted = Eigen::Vector2f::Zero();
+  Eigen::Vector2f followed = Eigen::Vector2f::Zero();
+  float share = 0;
+  int judged = 0;
+  int kept_points = 0;
+  for (const Point& point : points) {
+    place += point.at;
+    voted += point.vote.velocity_px;
+    share += point.vote.share;
+    if (point.texture < ForwardBackwardFilter::kMinTexture) continue;
+    const ForwardBackwardFilter::Trace trace =
+        forward_backward.Follow(point.at, point.vote.velocity_px, cell_px);
+    if (trace.directions == 0) continue;
+    ++judged;
+    if (!trace.kept) continue;
+    ++kept_points;
+    followed += trace.velocity_px;
+  }
+  if (kept_points < kLeastKept * judged) return false;
+  const auto count = static_cast<float>(points.size());
+  at = (place / count).cast<double>();
+  candidate.has_velocity = votes || follows;
+  const Eigen::Vector2f velocity =
+      kept_points > 0 ? followed / static_cast<float>(kept_points) : voted / count;
+  if (candidate.has_velocity && velocity.norm() < options.min_speed_px) return false;
+  candidate.velocity_px = velocity.cast<double>();
+  // Where nothing could be followed, the forward-backward filter is taken to be undecided.
+  const double agreed = judged > 0 ? static_cast<double>(kept_points) / judged : kUndecided;
+  candidate.confidence = (votes ? share / count : 1.0) * (follows ? agreed : 1.0);
+  return true;
+}
+
+// Seeds spread evenly over the component, and of those the ones with most texture.
+void MotionDetection::State::ChoosePoints(const SeedComponent& component) {
+  points.clear();
+  cell_px = std::clamp(static_cast<int>(std::lround(std::sqrt(component.area_px) / kSidePerCell)),
+                       1, ForwardBackwardFilter::kMaxCellPx);
+  const int count = std::min(kPointsLookedAt, component.area_px);
   const BitRun* piece = extraction.pieces().data() + component.first_piece;
   int before = 0;  // seeds in the pieces before this one
-  int kept_points = 0;
-  double share = 0;
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
-  at.setZero();
-  for (int i = 0; i < points; ++i) {
-    const int seed = (2 * i + 1) * component.area_px / (2 * points);
+  for (int i = 0; i < count; ++i) {
+    const int seed = (2 * i + 1) * component.area_px / (2 * count);
     while (seed - before > piece->last - piece->first) {
       before += piece->last - piece->first + 1;
       ++piece;
     }
+    Point point;
     const int x = piece->first + seed - before;
-    const int y = piece->y;
-    SeedVote vote;
-    if (options.vote_share > 0) vote = voting.At(x, y);
-    at += Eigen::Vector2d(x, y) / points;
-    share += vote.share / points;
-    Eigen::Vector2f measured = vote.velocity_px;
-    if (options.forward_backward_margin_px > 0) {
-      const ForwardBackwardFilter::Trace trace =
-          forward_backward.Follow({static_cast<float>(x), static_cast<float>(y)}, vote.velocity_px);
-      if (!trace.kept) continue;
-      measured = trace.velocity_px;
-    }
-    ++kept_points;
-    velocity += measured.cast<double>();
+    point.at = {static_cast<float>(x), static_cast<float>(piece->y)};
+    if (options.vote_share > 0) point.vote = voting.At(x, piece->y);
+    if (options.forward_backward_margin_px > 0)
+      point.texture = forward_backward.Texture(point.at, cell_px);
+    points.push_back(point);
   }
-  if (kept_points < kLeastKept * points) return false;
-  candidate.velocity_px = velocity / kept_points;
-  candidate.has_velocity = options.vote_share > 0 || options.forward_backward_margin_px > 0;
-  const double followed = static_cast<double>(kept_points) / points;
-  candidate.confidence = options.vote_share > 0 ? share * followed : followed;
-  return true;
+  if (count <= kPointsPerComponent) return;
+  std::nth_element(points.begin(), points.begin() + kPointsPerComponent, points.end(),
+                   [](const Point& a, const Point& b) { return a.texture > b.texture; });
+  points.resize(kPointsPerComponent);
 }
 
 }  // namespace windhover

@@ -133,6 +133,7 @@ void Tracking::Correct(Track& track, const MotionCandidate& candidate) const {
 // Net displacement, so that jitter does not add up.
 bool Tracking::Confirmed(const Track& track) const {
   if (track.seen_frames < settings_.min_track_frames) return false;
+  if (settings_.min_travel_px <= 0) return true;
   const double travel = (track.centre - track.origin).norm();
   return travel >= std::max(settings_.min_travel_px, kTravelOfSize * track.size.minCoeff());
 }

@@ -18,10 +18,12 @@ struct MotionCandidate {
 };
 
 struct TrackingSettings {
-  double max_speed_px = 0.0;   // px a frame over the ground
-  double min_travel_px = 0.0;  // way over the ground before a track is reported
-  int min_track_frames = 1;    // candidates that a track must have had before it is reported
-  int max_coast_frames = 0;    // frames that a track survives without a candidate
+  double max_speed_px = 0.0;  // px a frame over the ground
+  // Way over the ground before a track is reported, and a quarter of its box's shorter side at
+  // least; 0 asks for none.
+  double min_travel_px = 0.0;
+  int min_track_frames = 1;  // candidates that a track must have had before it is reported
+  int max_coast_frames = 0;  // frames that a track survives without a candidate
 };
 
 // Tracks with ids that stay: each track's state is carried from frame to frame over the ground by

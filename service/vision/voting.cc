@@ -13,10 +13,14 @@ namespace {
 
 constexpr int kSmallestBlock = 4;
 constexpr int kLargestBlock = 32;
-constexpr std::size_t kMaxBlocks = 4096;
+constexpr std::size_t kMaxBlocks = 2048;
 // How far from its pixel's centre a seed may belong to the trajectory, px: half a pixel for the
 // raster and half a pixel for the registration and for what is not constant in the velocity.
 constexpr double kSeedRadiusPx = 1.0;
+// Frames whose pixels are at most so many cells wide are laid out.
+constexpr double kLaidOutCellsPerPx = 2.0;
+// Empty cells around a laid out picture: a window may reach so far beyond.
+constexpr int kMargin = 32;
 // The share that is asked for is that of this part of the window's frames at least, even where less
 // of them see the trajectory's ground.
 constexpr double kLeastSeen = 0.4;
@@ -71,36 +75,70 @@ const SeedVote& VotingFilter::At(int x, int y) const {
   return index < 0 ? kNone : blocks_[index].vote;
 }
 
+// The cells that a seed `px` pixels from the origin votes for; cell c is centred on c.
+VotingFilter::CellRange VotingFilter::Footprint(double px, double cells_per_px) {
+  const auto first = static_cast<int>(std::floor((px - kSeedRadiusPx) * cells_per_px + 0.5));
+  const auto last = static_cast<int>(std::ceil((px + kSeedRadiusPx) * cells_per_px - 0.5));
+  return {first, std::max(first, last)};
+}
+
 void VotingFilter::PrepareVoters(std::span<const WindowSample> window, std::size_t centre) {
+  width_ = window[centre].seeds.width;
+  height_ = window[centre].seeds.height;
   voter_count_ = window.size() - 1;
   if (voters_.size() < voter_count_) voters_.resize(voter_count_);
   furthest_ = 1;
+  for (const WindowSample& sample : window) {
+    furthest_ = std::max(furthest_, std::abs(sample.offset_frames));
+  }
+  cell_px_ = std::max(1.0, max_speed_px_ * furthest_ / kMiddle);
+
   std::size_t next = 0;
   for (std::size_t i = 0; i < window.size(); ++i) {
     if (i == centre) continue;
-    voters_[next].sample = i;
-    voters_[next].offset_frames = window[i].offset_frames;
-    furthest_ = std::max(furthest_, std::abs(window[i].offset_frames));
-    ++next;
-  }
-  cell_px_ = std::max(1.0, max_speed_px_ * furthest_ / kMiddle);
-  plane_count_ = std::bit_width(voter_count_);
-
-  for (std::size_t i = 0; i < voter_count_; ++i) {
-    Voter& voter = voters_[i];
-    voter.runs.Collect(window[voter.sample].seeds);
+    Voter& voter = voters_[next++];
+    voter.sample = i;
+    voter.seeds = window[i].seeds;
+    voter.offset_frames = window[i].offset_frames;
     const int distance = std::max(1, std::abs(voter.offset_frames));
+    voter.cells_per_px = furthest_ / (distance * cell_px_);
+    voter.laid_out = voter.cells_per_px <= kLaidOutCellsPerPx;
+    if (voter.laid_out) {
+      LayOut(voter);
+      continue;
+    }
     voter.reach = static_cast<int>(std::ceil(max_speed_px_ * distance));
-    voter.cells.resize(2 * voter.reach + 1);
-    const double scale = furthest_ / (distance * cell_px_);
+    voter.footprint.resize(2 * voter.reach + 1);
     const int sign = voter.offset_frames < 0 ? -1 : 1;
     for (int d = -voter.reach; d <= voter.reach; ++d) {
-      const double low = kMiddle + (sign * d - kSeedRadiusPx) * scale;
-      const double high = kMiddle + (sign * d + kSeedRadiusPx) * scale;
-      const int first = static_cast<int>(std::floor(low + 0.5));
-      const int last = static_cast<int>(std::ceil(high - 0.5));
-      voter.cells[d + voter.reach] = {static_cast<std::int16_t>(std::clamp(first, 0, kCells - 1)),
-                                      static_cast<std::int16_t>(std::clamp(last, 0, kCells - 1))};
+      const CellRange range = Footprint(sign * d, voter.cells_per_px);
+      voter.footprint[d + voter.reach] = {std::clamp(range.first + kMiddle, 0, kCells - 1),
+                                          std::clamp(range.last + kMiddle, 0, kCells - 1)};
+    }
+  }
+}
+
+// Frames before the centre are laid out upside down and back to front, so that their votes, too,
+// point to where the object will be.
+void VotingFilter::LayOut(Voter& voter) {
+  const bool mirrored = voter.offset_frames < 0;
+  const auto across = static_cast<int>(std::ceil(width_ * voter.cells_per_px)) + 2 * kMargin;
+  const auto down = static_cast<int>(std::ceil(height_ * voter.cells_per_px)) + 2 * kMargin;
+  voter.stride = across / 64 + 2;
+  voter.cells.assign(voter.stride * (down + 1), 0);
+  runs_.Collect(voter.seeds);
+  for (const BitRun& run : runs_.runs) {
+    const int y = mirrored ? height_ - 1 - run.y : run.y;
+    const int left = mirrored ? width_ - 1 - run.last : run.first;
+    const int right = mirrored ? width_ - 1 - run.first : run.last;
+    const CellRange rows = Footprint(y, voter.cells_per_px);
+    const int first = Footprint(left, voter.cells_per_px).first + kMargin;
+    const int last = Footprint(right, voter.cells_per_px).last + kMargin;
+    for (int row = rows.first + kMargin; row <= rows.last + kMargin; ++row) {
+      std::uint64_t* words = voter.cells.data() + row * voter.stride;
+      for (int i = first / 64; i <= last / 64; ++i) {
+        words[i] |= BitsBetween(std::max(first - 64 * i, 0), std::min(last - 64 * i, 63));
+      }
     }
   }
 }
@@ -172,8 +210,16 @@ void VotingFilter::AddBlock(const BitView& seeds, int bx, int by, int size) {
 void VotingFilter::Judge(std::span<const WindowSample> window, Block& block) {
   block.vote = {};
   block.kept = false;
+  plane_count_ = std::bit_width(voter_count_);
   for (int plane = 0; plane < plane_count_; ++plane) planes_[plane].fill(0);
-  for (std::size_t i = 0; i < voter_count_; ++i) CastVotes(voters_[i], block.x, block.y);
+  for (std::size_t i = 0; i < voter_count_; ++i) {
+    const int planes = std::bit_width(i + 1);
+    if (voters_[i].laid_out) {
+      CastLaidOut(voters_[i], block.x, block.y, planes);
+    } else {
+      CastSeedBySeed(voters_[i], block.x, block.y, planes);
+    }
+  }
   const int votes = FindMaximum(block.vote.velocity_px);
   if (votes == 0) return;
 
@@ -191,33 +237,53 @@ void VotingFilter::Judge(std::span<const WindowSample> window, Block& block) {
   block.kept = block.vote.share >= share_;
 }
 
-void VotingFilter::CastVotes(const Voter& voter, int x, int y) {
-  const int height = static_cast<int>(voter.runs.row_begin.size()) - 1;
-  const int top = std::max(0, y - voter.reach);
-  const int bottom = std::min(height - 1, y + voter.reach);
-  const int left = x - voter.reach;
-  const int right = x + voter.reach;
+// Adds a voter's votes to the lowest `planes` bit planes, which hold all counts that there can be.
+void VotingFilter::CastLaidOut(const Voter& voter, int x, int y, int planes) {
   const bool mirrored = voter.offset_frames < 0;
-  const BitRun* run = voter.runs.runs.data() + voter.runs.row_begin[top];
-  const BitRun* end = voter.runs.runs.data() + voter.runs.row_begin[bottom + 1];
+  const auto at = [&](int px) {
+    return static_cast<int>(std::lround(px * voter.cells_per_px)) + kMargin - kMiddle;
+  };
+  const int left = at(mirrored ? width_ - 1 - x : x);
+  const int top = at(mirrored ? height_ - 1 - y : y);
+  const std::uint64_t* words = voter.cells.data() + top * voter.stride + left / 64;
+  const int shift = left % 64;
+  CellRows votes;
+  for (int row = 0; row < kCells; ++row, words += voter.stride) {
+    votes[row] = (words[0] >> shift) | (words[1] << 1 << (63 - shift));
+    votes[row] &= ~std::uint64_t{0} >> (64 - kCells);
+  }
+  AddVotes(planes_[0].data(), planes, kRows, votes.data(), 0, kCells - 1);
+}
 
+void VotingFilter::CastSeedBySeed(const Voter& voter, int x, int y, int planes) {
+  const int left = x - voter.reach;
+  const int across = 2 * voter.reach + 1;
+  const int top = std::max(0, y - voter.reach);
+  const int bottom = std::min(height_ - 1, y + voter.reach);
+  const bool mirrored = voter.offset_frames < 0;
   CellRows votes;
   int first_row = kRows;
   int last_row = -1;
-  for (; run != end; ++run) {
-    if (run->last < left || run->first > right) continue;
-    const CellRange& from = voter.cells[std::max(run->first, left) - left];
-    const CellRange& to = voter.cells[std::min(run->last, right) - left];
-    const CellRange& rows = voter.cells[run->y - y + voter.reach];
-    const std::uint64_t bits =
-        mirrored ? BitsBetween(to.first, from.last) : BitsBetween(from.first, to.last);
+  for (int seed_y = top; seed_y <= bottom; ++seed_y) {
+    std::uint64_t bits = voter.seeds.Read(left, seed_y) & (~std::uint64_t{0} >> (64 - across));
+    if (bits == 0) continue;
     if (last_row < 0) votes.fill(0);
-    first_row = std::min<int>(first_row, rows.first);
-    last_row = std::max<int>(last_row, rows.last);
-    for (int row = rows.first; row <= rows.last; ++row) votes[row] |= bits;
+    std::uint64_t cells = 0;
+    while (bits != 0) {
+      const int first = std::countr_zero(bits);
+      const int last = first + std::countr_one(bits >> first) - 1;
+      bits &= ~BitsBetween(first, last);
+      const CellRange& from = voter.footprint[mirrored ? last : first];
+      const CellRange& to = voter.footprint[mirrored ? first : last];
+      cells |= BitsBetween(from.first, to.last);
+    }
+    const CellRange& rows = voter.footprint[seed_y - y + voter.reach];
+    first_row = std::min(first_row, rows.first);
+    last_row = std::max(last_row, rows.last);
+    for (int row = rows.first; row <= rows.last; ++row) votes[row] |= cells;
   }
   if (last_row < 0) return;
-  AddVotes(planes_[0].data(), plane_count_, kRows, votes.data(), first_row, last_row);
+  AddVotes(planes_[0].data(), planes, kRows, votes.data(), first_row, last_row);
 }
 
 // The largest count in V, and the velocity in the middle of the cells that reach it.

@@ -60,17 +60,23 @@ class VotingFilter {
   using CellRows = std::array<std::uint64_t, kRows>;
 
   struct CellRange {
-    std::int16_t first;
-    std::int16_t last;
+    int first;
+    int last;
   };
-  // How the seeds of one frame vote.
+  // How the seeds of one frame vote. Where its pixels are not much larger than cells, the seeds are
+  // laid out as V sees them once for all blocks: `cells` is a bit picture of footprints, from which
+  // a block reads its window. The footprints of nearer frames are large and their windows small:
+  // those are cast seed by seed.
   struct Voter {
     std::size_t sample;
     int offset_frames;
+    double cells_per_px;
     int reach;  // half the window, px
-    // Cells that a seed at distance dx - reach votes for.
-    std::vector<CellRange> cells;
-    BitRuns runs;
+    bool laid_out;
+    std::ptrdiff_t stride;  // 64-bit words from one row of `cells` to the next
+    std::vector<std::uint64_t> cells;
+    BitView seeds;
+    std::vector<CellRange> footprint;  // of a seed at distance d: footprint[d + reach]
   };
   struct Block {
     int x;
@@ -78,13 +84,16 @@ class VotingFilter {
     SeedVote vote;
     bool kept;
   };
+  static CellRange Footprint(double px, double cells_per_px);
 
   void PrepareVoters(std::span<const WindowSample> window, std::size_t centre);
+  void LayOut(Voter& voter);
   void CollectBlocks(const BitView& seeds);
   bool CollectBlocksOfSize(const BitView& seeds, int size);
   void AddBlock(const BitView& seeds, int bx, int by, int size);
   void Judge(std::span<const WindowSample> window, Block& block);
-  void CastVotes(const Voter& voter, int x, int y);
+  void CastLaidOut(const Voter& voter, int x, int y, int planes);
+  void CastSeedBySeed(const Voter& voter, int x, int y, int planes);
   int FindMaximum(Eigen::Vector2f& velocity_px) const;
 
   double max_speed_px_;
@@ -93,7 +102,10 @@ class VotingFilter {
   double cell_px_ = 1.0;  // size of a cell of V in the furthest frame
   int plane_count_ = 0;
   std::array<CellRows, kMaxPlanes> planes_{};
-  std::vector<Voter> voters_;  // nearest frames first; more than voter_count_ are kept for reuse
+  int width_ = 0;
+  int height_ = 0;
+  BitRuns runs_;
+  std::vector<Voter> voters_;  // may hold more than voter_count_, for reuse
   std::size_t voter_count_ = 0;
   std::vector<Block> blocks_;
   int block_size_ = 4;

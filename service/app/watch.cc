@@ -19,6 +19,10 @@
 namespace windhover {
 namespace {
 
+constexpr std::chrono::nanoseconds kForever(-1);
+// For samples that are still on their way through the DDS library when their publisher has gone.
+constexpr std::chrono::nanoseconds kGrace = std::chrono::seconds(1);
+
 // Nobody reads the output any more.
 struct OutputClosed {};
 
@@ -54,6 +58,7 @@ class Printer {
     };
     handlers.publishers_changed = [this](int publishers) {
       if (done()) return;
+      publishers_ = publishers;
       WriteAll(options_.json ? JsonPublishersLine(publishers) : TextPublishersLine(publishers));
     };
     return handlers;
@@ -64,6 +69,13 @@ class Printer {
     return options_.until_end && open_.empty() &&
            (homographies_ended_ || !options_.subscribe.homographies) &&
            (detections_ended_ || !options_.subscribe.detections);
+  }
+
+  // A stream has ended on one topic, but nothing is known of the other, and nobody is there who
+  // could tell: its publisher has died before it could.
+  bool other_topic_missing() const {
+    return options_.until_end && !done() && open_.empty() && publishers_ == 0 &&
+           (homographies_ended_ || detections_ended_);
   }
 
   bool lost() const { return lost_; }
@@ -87,6 +99,7 @@ class Printer {
   }
 
   const WatchOptions& options_;
+  int publishers_ = 0;
   std::uint64_t samples_ = 0;
   std::set<std::pair<Topic, std::string>> open_;
   bool homographies_ended_ = false;
@@ -106,21 +119,22 @@ int Watch(const WatchOptions& options) {
   });
   Printer printer(options);
   const Subscriber::Handlers handlers = printer.handlers();
+  bool lost = false;
   try {
-    while (!interrupted && !printer.done()) {
-      subscriber.Poll(std::chrono::nanoseconds(-1), handlers);
+    while (!interrupted && !lost && !printer.done()) {
+      const bool missing = printer.other_topic_missing();
+      const bool something = subscriber.Poll(missing ? kGrace : kForever, handlers);
+      lost = missing && !something && !interrupted;
     }
   } catch (const OutputClosed&) {
     return kExitOk;
   }
-  if (!printer.done()) {
-    return options.until_end || options.count > 0 ? kExitInterrupted : kExitOk;
-  }
-  if (printer.lost()) {
+  if (lost || printer.lost()) {
     Log()->error("A publisher is gone without having ended its stream");
     return kExitFailed;
   }
-  return kExitOk;
+  const bool early = !printer.done() && (options.until_end || options.count > 0);
+  return early ? kExitInterrupted : kExitOk;
 }
 
 }  // namespace windhover

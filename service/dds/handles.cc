@@ -31,6 +31,8 @@ Qos MakeQos(bool reliable, int max_blocking_ms, int history_depth, const std::st
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   dds_qset_resource_limits(qos.get(), DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
                            DDS_LENGTH_UNLIMITED);
+  // Ends are told by disposing; a publisher that dies shall look different.
+  dds_qset_writer_data_lifecycle(qos.get(), false);
   if (!partitions.empty()) SetPartitions(qos.get(), partitions);
   return qos;
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "service/dds/conversion.h"
 #include "service/dds/handles.h"
@@ -99,8 +100,8 @@ class TopicReader {
     CheckDds(dds_waitset_attach(waitset, something_to_take_.get(), 0), "dds_waitset_attach");
   }
 
-  // True where the number of publishers has changed.
-  bool UpdatePublishers() {
+  // The number of publishers now.
+  int UpdatePublishers() {
     dds_requested_incompatible_qos_status_t incompatible;
     CheckDds(dds_get_requested_incompatible_qos_status(reader_.get(), &incompatible),
              "dds_get_requested_incompatible_qos_status");
@@ -112,11 +113,8 @@ class TopicReader {
     dds_subscription_matched_status_t matched;
     CheckDds(dds_get_subscription_matched_status(reader_.get(), &matched),
              "dds_get_subscription_matched_status");
-    publishers_ = static_cast<int>(matched.current_count);
-    return matched.total_count_change != 0 || matched.current_count_change != 0;
+    return static_cast<int>(matched.current_count);
   }
-
-  int publishers() const { return publishers_; }
 
   // Takes all samples: calls stream_of(data) for each, then sample(data, info) for each that has
   // valid data and belongs to the stream.
@@ -138,7 +136,6 @@ class TopicReader {
 
  private:
   const char* name_;
-  int publishers_ = 0;
   Endings endings_;
   Entity topic_;
   Entity reader_;
@@ -166,14 +163,16 @@ struct Subscriber::State {
   }
 
   void TellPublishers(const Handlers& handlers) {
-    bool changed = false;
-    std::optional<int> publishers;
+    std::optional<int> now;
     for (auto* reader : {&homographies, &detections}) {
       if (!reader->has_value()) continue;
-      changed = (*reader)->UpdatePublishers() || changed;
-      publishers = std::min(publishers.value_or((*reader)->publishers()), (*reader)->publishers());
+      const int of_topic = (*reader)->UpdatePublishers();
+      now = std::min(now.value_or(of_topic), of_topic);
     }
-    if (changed && handlers.publishers_changed) handlers.publishers_changed(publishers.value_or(0));
+    const int before = std::exchange(publishers, now.value_or(0));
+    if (publishers != before && handlers.publishers_changed) {
+      handlers.publishers_changed(publishers);
+    }
   }
 
   // `sample` is the object that is used again for each sample.
@@ -194,6 +193,7 @@ struct Subscriber::State {
   }
 
   std::string stream;
+  int publishers = 0;
   HomographySample homography_sample;
   DetectionsSample detections_sample;
   Participant participant;

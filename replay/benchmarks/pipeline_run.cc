@@ -66,18 +66,19 @@ void SetProperties(GstElement* pipeline, const PipelineSettings& settings) {
   gst_iterator_free(elements);
 }
 
-// The planes of I420 as GStreamer lays them out, which may pad rows.
+// The frame's planes as GStreamer lays them out, which may pad rows.
 GstBuffer* MakeBuffer(const cv::Mat& frame, const GstVideoInfo& info) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, GST_VIDEO_INFO_SIZE(&info), nullptr);
   GstMapInfo map;
   gst_buffer_map(buffer, &map, GST_MAP_WRITE);
   const std::uint8_t* from = frame.ptr();
-  for (int plane = 0; plane < 3; ++plane) {
-    const int width = GST_VIDEO_INFO_COMP_WIDTH(&info, plane);
-    for (int y = 0; y < GST_VIDEO_INFO_COMP_HEIGHT(&info, plane); ++y, from += width) {
+  for (guint plane = 0; plane < GST_VIDEO_INFO_N_PLANES(&info); ++plane) {
+    const int row_bytes =
+        GST_VIDEO_INFO_COMP_WIDTH(&info, plane) * GST_VIDEO_INFO_COMP_PSTRIDE(&info, plane);
+    for (int y = 0; y < GST_VIDEO_INFO_COMP_HEIGHT(&info, plane); ++y, from += row_bytes) {
       std::memcpy(map.data + GST_VIDEO_INFO_PLANE_OFFSET(&info, plane) +
                       static_cast<std::size_t>(y) * GST_VIDEO_INFO_PLANE_STRIDE(&info, plane),
-                  from, width);
+                  from, row_bytes);
     }
   }
   gst_buffer_unmap(buffer, &map);
@@ -101,8 +102,12 @@ ObjectPtr<GstElement> BuildPipeline(const PipelineSettings& settings) {
 
 void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double frame_rate_hz) {
   GstVideoInfo info;
-  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_I420, frames.front().cols,
-                            frames.front().rows * 2 / 3);
+  const cv::Mat& first = frames.front();
+  if (first.channels() == 3) {
+    gst_video_info_set_format(&info, GST_VIDEO_FORMAT_BGR, first.cols, first.rows);
+  } else {
+    gst_video_info_set_format(&info, GST_VIDEO_FORMAT_I420, first.cols, first.rows * 2 / 3);
+  }
   info.fps_n = static_cast<int>(std::lround(frame_rate_hz * 1000));
   info.fps_d = 1000;
   GstCaps* caps = gst_video_info_to_caps(&info);
@@ -137,24 +142,22 @@ void AwaitEnd(GstElement* pipeline) {
 
 }  // namespace
 
-std::vector<Clock::time_point> PlayThroughPipeline(const std::vector<cv::Mat>& frames,
-                                                   double frame_rate_hz,
-                                                   const PipelineSettings& settings) {
+void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
+                         const PipelineSettings& settings,
+                         const std::function<void(GstBuffer*)>& leave) {
   FindElements();
-  std::vector<Clock::time_point> left;
-  left.reserve(frames.size());
   const ObjectPtr<GstElement> pipeline = BuildPipeline(settings);
   const ObjectPtr<GstElement> source(gst_bin_get_by_name(GST_BIN(pipeline.get()), "source"));
   const ObjectPtr<GstElement> sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "sink"));
   GstPad* pad = gst_element_get_static_pad(sink.get(), "sink");
-  // Runs on one streaming thread; read only after the pipeline has stopped.
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo*, gpointer data) {
-        static_cast<std::vector<Clock::time_point>*>(data)->push_back(Clock::now());
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+        (*static_cast<const std::function<void(GstBuffer*)>*>(data))(
+            GST_PAD_PROBE_INFO_BUFFER(info));
         return GST_PAD_PROBE_OK;
       },
-      &left, nullptr);
+      const_cast<std::function<void(GstBuffer*)>*>(&leave), nullptr);
   gst_object_unref(pad);
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   std::string failure;
@@ -166,7 +169,6 @@ std::vector<Clock::time_point> PlayThroughPipeline(const std::vector<cv::Mat>& f
   }
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   if (!failure.empty()) throw std::runtime_error("the pipeline failed: " + failure);
-  return left;
 }
 
 }  // namespace windhover::replay

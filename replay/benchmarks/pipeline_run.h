@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "replay/benchmarks/timing.h"
+typedef struct _GstBuffer GstBuffer;
 
 namespace windhover::replay {
 
@@ -16,13 +18,14 @@ struct PipelineSettings {
   std::vector<std::pair<std::string, std::string>> properties;
 };
 
-// Plays frames that lie in memory through a GStreamer pipeline as fast as it takes them, and
-// returns when each one left it. `frames` are I420 as cv::cvtColor makes it (CV_8UC1, 1.5 times the
-// height), of even width and height. The elements come from GStreamer's registry; where they are
-// not known, from lib/gstreamer-1.0 beside the program's bin folder. Throws std::runtime_error
-// where the pipeline cannot be built or fails.
-std::vector<Clock::time_point> PlayThroughPipeline(const std::vector<cv::Mat>& frames,
-                                                   double frame_rate_hz,
-                                                   const PipelineSettings& settings);
+// Plays frames that lie in memory through a GStreamer pipeline as fast as it takes them, and calls
+// `leave` with each buffer that comes out, on the pipeline's own thread; returns after the last
+// one. `frames` are I420 as cv::cvtColor makes it (CV_8UC1, 1.5 times the height), of even width
+// and height. The elements come from GStreamer's registry; where they are not known, from
+// lib/gstreamer-1.0 beside the program's own folder. Throws std::runtime_error where the pipeline
+// cannot be built or fails.
+void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
+                         const PipelineSettings& settings,
+                         const std::function<void(GstBuffer*)>& leave);
 
 }  // namespace windhover::replay

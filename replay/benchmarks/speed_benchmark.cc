@@ -157,8 +157,10 @@ class PipelineContestant : public Contestant {
     const std::vector<cv::Mat> played(
         flight.i420.begin(),
         flight.i420.begin() + static_cast<std::ptrdiff_t>(std::min(frames_, flight.i420.size())));
-    const std::vector<Clock::time_point> left =
-        PlayThroughPipeline(played, frame_rate_hz_, settings_);
+    std::vector<Clock::time_point> left;
+    left.reserve(played.size());
+    PlayThroughPipeline(played, frame_rate_hz_, settings_,
+                        [&left](GstBuffer*) { left.push_back(Clock::now()); });
     if (left.size() != played.size()) {
       throw std::runtime_error(std::to_string(played.size()) + " frames went into the pipeline, " +
                                std::to_string(left.size()) + " came out");

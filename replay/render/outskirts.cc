@@ -177,10 +177,20 @@ class Outskirts {
 
   void AddGarden(Vector2d centre, Vector2d along, double width) {
     const Vector2d deep = Right(along);
-    const int trees = random_.Below(3);
+    const int trees = 1 + random_.Below(4);
     for (int i = 0; i < trees; ++i) {
-      AddTree(centre + random_.Uniform(-0.4, 0.4) * width * along + random_.Uniform(-5, 5) * deep,
-              random_.Uniform(1.3, 3.0));
+      AddTree(centre + random_.Uniform(-0.45, 0.45) * width * along + random_.Uniform(-7, 6) * deep,
+              random_.Uniform(1.5, 3.4));
+    }
+    const int bushes = random_.Below(7);
+    for (int i = 0; i < bushes; ++i) {
+      AddTree(centre + random_.Uniform(-0.5, 0.5) * width * along + random_.Uniform(-8, 9) * deep,
+              random_.Uniform(0.4, 0.9));
+    }
+    if (random_.Chance(0.4)) {  // path
+      scene_.plots.push_back({{centre + random_.Uniform(-4, 4) * along + 4 * deep, deep, 14, 1.1},
+                              GroundKind::kGravel,
+                              {134, 146, 154}});
     }
     if (random_.Chance(0.5)) {  // vegetable beds
       scene_.plots.push_back({{centre + random_.Uniform(-3, 3) * along, along, 5, 3.5},
@@ -215,6 +225,15 @@ class Outskirts {
     }
     scene_.hedges.push_back(
         {{{0.5 * (from + to), -13}, Vector2d::UnitX(), to - from - 30, 1.1}, 1.6});
+    // The green between the gardens and the main road.
+    for (int i = 0; i < 9; ++i) {
+      AddTree({random_.Uniform(from + 16, to - 16), random_.Uniform(-30, -17)},
+              random_.Uniform(0.5, 3.2));
+    }
+    scene_.plots.push_back(
+        {{{0.5 * (from + to), -15.5}, Vector2d(1, 0.03).normalized(), to - from - 26, 1.6},
+         GroundKind::kGravel,
+         {138, 150, 158}});
   }
 
   // Rows of bays with cars; `bays` a row.
@@ -273,9 +292,9 @@ class Outskirts {
         AddTree({x + random_.Uniform(-5, 5), 38}, random_.Uniform(2, 3.6));
       }
     }
-    for (int i = 0; i < 26; ++i) {  // a small wood
-      AddTree({random_.Uniform(from + 14, to - 50), random_.Uniform(58, 100)},
-              random_.Uniform(2.0, 3.6));
+    for (int i = 0; i < 60; ++i) {  // a small wood
+      AddTree({random_.Uniform(from + 14, to - 50), random_.Uniform(54, 100)},
+              random_.Uniform(2.0, 4.2));
     }
     scene_.plots.push_back(
         {{{to - 26, 80}, Vector2d::UnitX(), 36, 44}, GroundKind::kGravel, {120, 142, 156}});

@@ -8,8 +8,8 @@
 
 namespace windhover {
 
-// Pictures: pixel centres at 0-based integers, x right, y down. `b_from_a` takes points of picture a
-// to picture b.
+// Pictures: pixel centres at 0-based integers, x right, y down. `b_from_a` takes points of picture
+// a to picture b.
 
 enum class RegistrationQuality : std::uint8_t {
   kValid,     // use it
@@ -40,8 +40,8 @@ struct FrameRegistration {
   // Share of the frame, 0 to 1, that lies on the picture it was registered to.
   double overlap = 1.0;
   RegistrationQuality quality = RegistrationQuality::kValid;
-  // The first frame, and each frame from which on the ground is known anew (after a scene cut, say):
-  // nothing before it can be compared with it.
+  // The first frame, and each frame from which on the ground is known anew (after a scene cut,
+  // say): nothing before it can be compared with it.
   bool starts_segment = false;
 };
 

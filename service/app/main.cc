@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <functional>
@@ -122,6 +123,20 @@ void AddDeviceCommands(CLI::App& app, Arguments& arguments) {
       [&] { arguments.command = [&] { return WarmUpDevice(arguments.device); }; });
 }
 
+// In one line, whatever line feeds the text has.
+void ReportError(const std::string& text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\n') {
+      line += text[i];
+      continue;
+    }
+    line += line.ends_with(':') ? " " : "; ";
+    i = std::min(text.find_first_not_of(" \n", i), text.size()) - 1;
+  }
+  fmt::print(stderr, "windhover: {}\n", line);
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("Real-time streaming service for aerial video", "windhover");
   app.set_version_flag("--version", kVersion);
@@ -138,7 +153,7 @@ int Main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    fmt::print(stderr, "windhover: {}\n", error.what());
+    ReportError(error.what());
     return kExitUsage;
   }
   spdlog::set_level(spdlog::level::from_str(log_level));
@@ -155,10 +170,10 @@ int main(int argc, char** argv) {
     windhover::UseLogger();
     return windhover::Main(argc, argv);
   } catch (const windhover::OptionError& error) {
-    fmt::print(stderr, "windhover: {}\n", error.what());
+    windhover::ReportError(error.what());
     return windhover::kExitUsage;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "windhover: {}\n", error.what());
+    windhover::ReportError(error.what());
     return windhover::kExitFailed;
   }
 }

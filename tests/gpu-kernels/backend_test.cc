@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <optional>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,6 +41,10 @@ struct SelectorCase {
   const char* selector;
   std::optional<std::size_t> index;
 };
+
+void PrintTo(const SelectorCase& selector_case, std::ostream* out) {
+  *out << '"' << selector_case.selector << '"';
+}
 
 class SelectDeviceTest : public testing::TestWithParam<SelectorCase> {};
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -353,6 +354,8 @@ struct TwinCase {
   PhaseCorrelationLayout layout;
   std::vector<PictureSize> sides;
 };
+
+void PrintTo(const TwinCase& twin_case, std::ostream* out) { *out << twin_case.name; }
 
 class PhaseCorrelationTwinTest : public testing::TestWithParam<TwinCase> {};
 

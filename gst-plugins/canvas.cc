@@ -138,8 +138,10 @@ void Canvas::FillCircle(const Eigen::Vector2d& centre, double radius, const Colo
 void Canvas::Darken(const cv::Rect& area) {
   for (Plane& plane : planes()) {
     cv::Mat part = plane.pixels(Within(area, plane));
-    const double offset = ValueOf({0, 0, 0}, plane.content)[0] * (1.0 - kDarkShare);
-    part.convertTo(part, -1, kDarkShare, offset);
+    // A fourth byte stays as it is: other elements may take it for opacity.
+    cv::multiply(part, cv::Scalar(kDarkShare, kDarkShare, kDarkShare, 1.0), part);
+    const double black = ValueOf({0, 0, 0}, plane.content)[0];
+    if (black > 0.0) cv::add(part, cv::Scalar::all(black * (1.0 - kDarkShare)), part);
   }
 }
 

@@ -17,8 +17,8 @@ constexpr Colour kGood = {70, 220, 110};
 constexpr Colour kFair = {255, 190, 40};
 constexpr Colour kBad = {255, 60, 50};
 
-// Line width for a picture of this height: 2 px at 540 lines.
-int LineWidth(const Canvas& canvas) { return std::max(1, (canvas.height() + 135) / 270); }
+// Line width for a picture of this height: 2 px at 540 lines, 3 px at 1080.
+int LineWidth(const Canvas& canvas) { return std::max(1, (canvas.height() + 360) / 420); }
 
 double LetterHeight(const Canvas& canvas) { return std::clamp(canvas.height() / 54.0, 7.0, 40.0); }
 
@@ -65,6 +65,30 @@ std::string StatusText(const FrameRegistration& registration, int detections) {
   return text.data();
 }
 
+// The means of each point and its neighbours, for boxes jump from frame to frame with the seeds at
+// their edges; of those too close together, the first.
+void SmoothPath(const std::vector<Eigen::Vector2d>& points, std::vector<Eigen::Vector2d>& path) {
+  constexpr std::size_t kNeighbours = 3;
+  constexpr double kMinDistancePx = 3.0;
+  path.clear();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t reach = std::min({i, points.size() - 1 - i, kNeighbours});
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (std::size_t j = i - reach; j <= i + reach; ++j) sum += points[j];
+    const Eigen::Vector2d mean = sum / static_cast<double>(2 * reach + 1);
+    const bool last = i + 1 == points.size();
+    if (path.empty() || last || (mean - path.back()).norm() >= kMinDistancePx) {
+      path.push_back(mean);
+    }
+  }
+}
+
+// The object itself is left free of its trail.
+bool Contains(const Box& box, const Eigen::Vector2d& point) {
+  return point.x() >= box.x && point.x() < box.x + box.width && point.y() >= box.y &&
+         point.y() < box.y + box.height;
+}
+
 void DrawFrame(int thickness, const Colour& colour, Canvas& canvas) {
   const int width = canvas.width();
   const int height = canvas.height();
@@ -84,20 +108,22 @@ void OverlayDrawing::Draw(const FrameRegistration* registration,
   }
   for (const Detection& detection : detections) DrawDetection(detection, canvas);
   if (registration == nullptr) return;
+  if (options_.status) DrawStatus(*registration, static_cast<int>(detections.size()), canvas);
   if (registration->quality == RegistrationQuality::kLost) {
     DrawFrame(3 * LineWidth(canvas), kBad, canvas);
   }
-  if (options_.status) DrawStatus(*registration, static_cast<int>(detections.size()), canvas);
 }
 
-void OverlayDrawing::DrawTrails(Canvas& canvas) const {
+void OverlayDrawing::DrawTrails(Canvas& canvas) {
   const int width = LineWidth(canvas);
   for (const Trails::Trail& trail : trails_.trails()) {
+    SmoothPath(trail.points, path_);
     const Colour colour = ColourOf(trail.track_id);
-    const double count = static_cast<double>(trail.points.size());
-    for (std::size_t i = 1; i < trail.points.size(); ++i) {
+    const double count = static_cast<double>(path_.size());
+    for (std::size_t i = 1; i < path_.size(); ++i) {
+      if (trail.seen && Contains(trail.box, path_[i])) continue;
       const double age = 1.0 - static_cast<double>(i) / count;
-      canvas.DrawLine(trail.points[i - 1], trail.points[i], Mix(colour, kDark, 0.7 * age),
+      canvas.DrawLine(path_[i - 1], path_[i], Mix(colour, kDark, 0.6 * age),
                       age < 0.5 ? width : std::max(1, width - 1));
     }
   }
@@ -134,9 +160,10 @@ void OverlayDrawing::DrawStatus(const FrameRegistration& registration, int detec
   const double middle = canvas.height() - 0.5 * strip;
   canvas.Darken({0, canvas.height() - strip, canvas.width(), strip});
   const Colour colour = ColourOf(registration.quality);
-  canvas.FillCircle({letters * 1.1, middle - 0.5}, 0.45 * letters, colour);
-  canvas.DrawText({letters * 2.2, middle + 0.5 * letters}, text, letters,
-                  registration.quality == RegistrationQuality::kLost ? kBad : kWhite);
+  canvas.FillCircle({letters * 1.5, middle - 0.5}, 0.45 * letters, colour);
+  canvas.DrawText(
+      {letters * 2.6, middle + 0.5 * letters}, text, letters,
+      registration.quality == RegistrationQuality::kLost ? Mix(kBad, kWhite, 0.4) : kWhite);
 }
 
 }  // namespace windhover

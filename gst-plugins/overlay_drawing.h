@@ -25,12 +25,13 @@ class OverlayDrawing {
   void Reset() { trails_.Reset(); }
 
  private:
-  void DrawTrails(Canvas& canvas) const;
+  void DrawTrails(Canvas& canvas);
   void DrawDetection(const Detection& detection, Canvas& canvas) const;
   void DrawStatus(const FrameRegistration& registration, int detections, Canvas& canvas) const;
 
   OverlayOptions options_;
   Trails trails_;
+  std::vector<Eigen::Vector2d> path_;
 };
 
 }  // namespace windhover

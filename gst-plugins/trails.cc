@@ -21,6 +21,7 @@ void Trails::Advance(const FrameRegistration& registration,
     const Box& box = detection.box;
     Trail& trail = TrailOf(detection.track_id);
     trail.seen = true;
+    trail.box = box;
     if (trail.points.size() >= max_points_) trail.points.erase(trail.points.begin());
     trail.points.emplace_back(box.x + 0.5 * (box.width - 1.0), box.y + 0.5 * (box.height - 1.0));
   }

@@ -19,6 +19,7 @@ class Trails {
     std::uint64_t track_id = 0;
     std::vector<Eigen::Vector2d> points;  // oldest first
     bool seen = false;                    // in the newest frame
+    Box box;                              // where it was seen last
   };
 
   explicit Trails(int max_points) : max_points_(static_cast<std::size_t>(max_points)) {}

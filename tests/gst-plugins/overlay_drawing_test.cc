@@ -72,6 +72,25 @@ TEST_P(CanvasTest, DrawsOverTheBorders) {
   EXPECT_GT(RgbAt(map.frame(), 30, 0)[0], 240.0);
 }
 
+TEST_P(CanvasTest, DarkensTowardsBlack) {
+  TestVideo video(64, 48, GetParam());
+  const BufferPtr buffer = video.Black(0);
+  const VideoFrameMap map(video.info(), buffer.get(), GST_MAP_READWRITE);
+  Canvas canvas(map.frame());
+  canvas.FillRectangle({0, 0, 64, 48}, {200, 100, 50});
+  const auto before = RgbAt(map.frame(), 10, 40);
+  canvas.Darken({0, 30, 64, 18});
+  const auto after = RgbAt(map.frame(), 10, 40);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(after[c], 0.35 * before[c], 5.0);
+  EXPECT_EQ(RgbAt(map.frame(), 10, 20), before);
+  if (GST_VIDEO_FRAME_COMP_PSTRIDE(&map.frame(), 0) == 4) {
+    const auto* pixel =
+        static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&map.frame(), 0)) +
+        40 * GST_VIDEO_FRAME_PLANE_STRIDE(&map.frame(), 0);
+    EXPECT_EQ(pixel[3], 255) << "what FillRectangle wrote";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, CanvasTest,
                          testing::Values(GST_VIDEO_FORMAT_GRAY8, GST_VIDEO_FORMAT_NV12,
                                          GST_VIDEO_FORMAT_I420, GST_VIDEO_FORMAT_BGR,

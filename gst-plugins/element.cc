@@ -89,6 +89,8 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     case GST_EVENT_SEGMENT:
       return HandleSegment(host, event);
     case GST_EVENT_STREAM_START:
+    case GST_EVENT_STREAM_GROUP_DONE:
+    case GST_EVENT_SEGMENT_DONE:
     case GST_EVENT_GAP:
       Guarded(host, false, [&] { return DrainAndReset(host); });
       return gst_pad_push_event(host->source, event);

@@ -155,7 +155,9 @@ void OverlayDrawing::DrawDetection(const Detection& detection, Canvas& canvas) c
 void OverlayDrawing::DrawStatus(const FrameRegistration& registration, int detections,
                                 Canvas& canvas) const {
   const std::string text = StatusText(registration, detections);
-  const double letters = LetterHeight(canvas);
+  double letters = LetterHeight(canvas);
+  // Smaller where the picture is too narrow for the line.
+  letters *= std::min(1.0, canvas.width() / (Canvas::TextWidth(text, letters) + 4.0 * letters));
   const int strip = static_cast<int>(std::lround(2.2 * letters));
   const double middle = canvas.height() - 0.5 * strip;
   canvas.Darken({0, canvas.height() - strip, canvas.width(), strip});

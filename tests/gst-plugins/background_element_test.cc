@@ -204,6 +204,32 @@ TEST_F(BackgroundElementTest, CapsChangeDrainsTheOldFirst) {
   }
 }
 
+// Both say that nothing follows soon.
+TEST_F(BackgroundElementTest, EndsOfSegmentsDrain) {
+  for (const bool group : {false, true}) {
+    Harness harness(Chain(4, 4));
+    harness.SetCaps(video_.Caps());
+    for (int t = 0; t < 3; ++t) harness.Push(video_.Frame(t));
+    harness.PushEvent(group ? gst_event_new_stream_group_done(1)
+                            : gst_event_new_segment_done(GST_FORMAT_TIME, GST_SECOND));
+    EXPECT_EQ(At(harness, "b2"), std::ssize(harness.log()) - 2);
+  }
+}
+
+TEST_F(BackgroundElementTest, EvidenceOutlivesTheElements) {
+  std::vector<BufferPtr> out;
+  {
+    Harness harness(Chain(2, 2));
+    harness.SetCaps(video_.Caps());
+    for (int t = 0; t < 4; ++t) harness.Push(video_.Frame(t));
+    out = harness.PullAll();
+  }
+  ASSERT_EQ(out.size(), 2u);
+  const auto evidence = TakeEvidence(out[1].get());
+  ASSERT_NE(evidence, nullptr);
+  EXPECT_EQ(evidence->background->Read().width(), evidence->background->width());
+}
+
 TEST_F(BackgroundElementTest, GapAndDiscontDrain) {
   for (const bool discont : {false, true}) {
     Harness harness(Chain(4, 4));

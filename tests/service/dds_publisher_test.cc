@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include "service/dds/publisher.h"
 #include "service/dds/subscriber.h"
 #include "tests/service/dds_samples.h"
+#include "tests/support/allocation_count.h"
 
 namespace windhover {
 namespace {
@@ -242,6 +244,32 @@ TEST_F(DdsTest, KeepAllLosesNothingOfManyQuickSamples) {
     EXPECT_EQ(homographies_[frame].registration.frame_number, frame);
     EXPECT_EQ(detections_[frame].frame_number, frame);
   }
+}
+
+TEST_F(DdsTest, AllocatesNothingOfOursPerSample) {
+  Connect();
+  std::uint64_t boxes = 0;
+  std::uint64_t samples = 0;
+  handlers_.homography = [&](const HomographySample&) { ++samples; };
+  handlers_.detections = [&](const DetectionsSample& sample) {
+    ++samples;
+    boxes += sample.detections.size();
+  };
+  std::vector<Detection> all;
+  for (int i = 0; i < 200; ++i) all.push_back(SampleDetection(i + 1));
+  const FrameRegistration registration = SampleRegistration(1, true);
+  const auto exchange = [&] {
+    const std::uint64_t before = samples;
+    publisher_->Publish(registration, 8, 8, 0);
+    publisher_->Publish(1, 8, 8, 0, all);
+    return PollUntil(*subscriber_, handlers_, [&] { return samples == before + 2; });
+  };
+  ASSERT_TRUE(exchange());
+  const std::size_t allocations = AllocationCount();
+  ASSERT_GT(allocations, 0);
+  for (int frame = 0; frame < 50; ++frame) ASSERT_TRUE(exchange());
+  EXPECT_EQ(AllocationCount() - allocations, 0);
+  EXPECT_EQ(boxes, 51 * all.size());
 }
 
 TEST_F(DdsTest, InterruptEndsAWait) {

@@ -85,7 +85,7 @@ class Outskirts {
     }
     scene_.roads.push_back({main, kMainWidth, 4, 2.2, true});
     for (const double lateral : {0.55 * kLane, 1.6 * kLane}) {
-      AddStreetLanes(main, lateral, 44, 9.5, 16.5, main_lights);
+      AddStreetLanes(main, lateral, 70, 9.5, 16.5, main_lights);
     }
     const Path side = Line(kWest, east_, [](double x) { return kSideStreetY + 3 * Sine(x / 40); });
     scene_.roads.push_back({side, 5.6, 2, 1.4, false});
@@ -104,7 +104,7 @@ class Outskirts {
     const Path path(points);
     scene_.roads.push_back({path, kStreetWidth, 2, 1.6, true});
     const double stop = 0.5 * path.length() - stop_distance_;
-    AddStreetLanes(path, 1.6, 60, 7.0, 10.5, {{stop, kPeriod, shift, kCrossGreen}});
+    AddStreetLanes(path, 1.6, 70, 7.0, 10.5, {{stop, kPeriod, shift, kCrossGreen}});
     scene_.junctions.push_back(
         {{{x, MainY(x)}, path.At(0.5 * path.length()).forward, kMainWidth + 1, kStreetWidth + 1}});
     scene_.junctions.push_back(

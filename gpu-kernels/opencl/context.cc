@@ -110,7 +110,8 @@ Program Context::Compile(std::string_view source, const std::string& options) {
   key += source;
 
   const std::lock_guard lock(mutex_);
-  if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
+  if (const auto found = programs_.find(key); found != programs_.end())
+    return found->second.program;
 
   Program program;
   program.device = name_;
@@ -122,14 +123,17 @@ Program Context::Compile(std::string_view source, const std::string& options) {
     program.handle = BuildFromSource(source, all_options);
     cache_.Store(key, BinaryOf(program.handle));
   }
-  programs_.emplace(std::move(key), program);
+  programs_.emplace(std::move(key), Compiled{program, std::string(source), all_options});
   return program;
 }
 
 void Context::StorePrograms() {
   const std::lock_guard lock(mutex_);
-  for (const auto& [key, program] : programs_) {
-    if (!program.from_cache) cache_.Store(key, BinaryOf(program.handle));
+  for (const auto& [key, compiled] : programs_) {
+    if (compiled.program.from_cache) continue;
+    // A program's binary does not change once it was taken; that of a new one has what the driver
+    // has compiled of the same source since.
+    cache_.Store(key, BinaryOf(BuildFromSource(compiled.source, compiled.options)));
   }
 }
 

@@ -88,8 +88,8 @@ class Context : public std::enable_shared_from_this<Context> {
   Program Compile(std::string_view source, const std::string& options = "");
 
   // Writes the programs that were compiled here, not read, to the program cache once more. Some
-  // drivers, PoCL among them, finish compiling at a kernel's first launch: binaries taken after it
-  // hold the result.
+  // drivers, PoCL among them, finish compiling at a kernel's first launch and can put the result
+  // into binaries that are taken later.
   void StorePrograms();
 
   std::unique_ptr<Buffer> Allocate(std::size_t size_bytes) const;
@@ -113,8 +113,13 @@ class Context : public std::enable_shared_from_this<Context> {
   Handle<cl_context> context_;
   Handle<cl_command_queue> map_queue_;
 
-  std::mutex mutex_;                         // guards programs_
-  std::map<std::string, Program> programs_;  // by the program cache's key
+  struct Compiled {
+    Program program;
+    std::string source;
+    std::string options;
+  };
+  std::mutex mutex_;                          // guards programs_
+  std::map<std::string, Compiled> programs_;  // by the program cache's key
 };
 
 // The buffer behind an image or other memory. Throws std::invalid_argument where it was not made by

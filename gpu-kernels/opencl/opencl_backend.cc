@@ -21,6 +21,7 @@ namespace {
 
 // What pictures from 320 x 240 to 4K, cut into 4 to 100 tiles, and windows of up to 255 frames ask
 // for.
+constexpr int kDecimations[] = {2, 3, 4, 5, 7, 10, 16};
 constexpr int kTransformSides[] = {32, 64, 128, 256, 512};
 constexpr std::size_t kMedianWindows[] = {21, 81, 255};
 
@@ -74,7 +75,7 @@ void OpenClBackend::WarmUp(const std::function<void(const std::string&)>& progre
 
   announce("decimation");
   const auto decimate = MakeDecimate();
-  for (int factor = 2; factor <= 4; ++factor) {
+  for (const int factor : kDecimations) {
     GrayImage small = MakeImage<std::uint8_t>(kSide / factor, kSide / factor);
     decimate->Run(source, factor, small);
   }

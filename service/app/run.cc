@@ -15,7 +15,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "gpu-kernels/backend.h"
@@ -23,6 +22,7 @@
 #include "service/app/pending_file.h"
 #include "service/app/pipeline.h"
 #include "service/app/progress.h"
+#include "service/app/run_outcome.h"
 #include "service/app/subscriber_process.h"
 #include "service/dds/log.h"
 
@@ -36,8 +36,6 @@ using std::chrono::seconds;
 // Longest wait until publisher and subscriber have found each other, and, at the end, until the
 // subscriber has got everything.
 constexpr auto kLongestWait = seconds(30);
-// A video that ends this much before its length says so is cut off.
-constexpr std::int64_t kCutOffNs = 500'000'000;
 // A source that gives no frame for so long after an interrupt is stopped by force.
 constexpr auto kStandstill = seconds(2);
 
@@ -66,13 +64,6 @@ std::string Text(GstMessage* message, void (*parse)(GstMessage*, GError**, char*
   g_error_free(error);
   return text;
 }
-
-// Samples of each topic and the detections in them.
-struct Samples {
-  std::uint64_t homographies = 0;
-  std::uint64_t detections = 0;
-  std::uint64_t boxes = 0;
-};
 
 // One run. All but the pipeline's streaming threads happens on the main loop of one thread.
 class Job {
@@ -106,12 +97,8 @@ class Job {
   void PlayOnceMatched();
   void EndOfVideo();
   void Fail(const std::string& text);
-  // Empty where nothing was lost on the way.
-  std::string Loss() const;
-  // Empty where the source is as long as it says.
-  std::string CutOff() const;
   int Finish();
-  std::string Summary() const;
+  RunOutcome Outcome() const;
   // From the first frame on.
   double FramesPerSecond(Clock::time_point until) const;
 
@@ -134,8 +121,8 @@ class Job {
   bool subscriber_ready_ = false;
   bool subscriber_ended_ = false;
   std::string device_;
-  Samples published_;
-  Samples received_;
+  RunOutcome::Samples published_;
+  RunOutcome::Samples received_;
   std::uint64_t failed_ = 0;
   Clock::time_point end_of_video_;
   std::string error_;
@@ -337,33 +324,21 @@ double Job::FramesPerSecond(Clock::time_point until) const {
   return elapsed > 0.0 ? static_cast<double>(pipeline_->frames_out()) / elapsed : 0.0;
 }
 
-std::string Job::Loss() const {
-  const std::uint64_t in = pipeline_->frames_in();
-  const std::uint64_t out = pipeline_->frames_out();
-  if (failed_ > 0) return fmt::format("{} samples could not be written to the bus", failed_);
-  if (in != out) return fmt::format("{} frames went in, {} came out", in, out);
-  for (const auto& [name, published, received] :
-       {std::tuple("homographies", published_.homographies, received_.homographies),
-        {"detections", published_.detections, received_.detections}}) {
-    if (published != out || received != published) {
-      return fmt::format("{} frames, but {} samples of {} published and {} received", out,
-                         published, name, received);
-    }
-  }
-  return "";
-}
-
-std::string Job::CutOff() const {
-  const std::int64_t length = pipeline_->length_ns();
-  const std::int64_t reached = pipeline_->reached_ns();
-  if (interrupted_) return "";
-  if (source_.missing_bytes > 0) {
-    return fmt::format("is cut off: {} bytes are missing; it ends after {:.2f} s, {} frames",
-                       source_.missing_bytes, 1e-9 * reached, pipeline_->frames_in());
-  }
-  if (length - reached < kCutOffNs) return "";
-  return fmt::format("is cut off: it ends after {:.2f} s of {:.2f} s, {} frames", 1e-9 * reached,
-                     1e-9 * length, pipeline_->frames_in());
+RunOutcome Job::Outcome() const {
+  RunOutcome outcome;
+  outcome.source = source_.name;
+  outcome.frames_in = pipeline_->frames_in();
+  outcome.frames_out = pipeline_->frames_out();
+  outcome.published = published_;
+  outcome.received = received_;
+  outcome.failed_samples = failed_;
+  outcome.frames_per_second = FramesPerSecond(end_of_video_);
+  outcome.device =
+      device_.empty() ? Backend::Create(Setting("device", ""))->device().Describe() : device_;
+  outcome.reached_ns = pipeline_->reached_ns();
+  outcome.length_ns = pipeline_->length_ns();
+  outcome.missing_bytes = source_.missing_bytes;
+  return outcome;
 }
 
 int Job::Finish() {
@@ -372,35 +347,28 @@ int Job::Finish() {
     fmt::print(stderr, "windhover: {}\n", error_);
     return kExitInterrupted;
   }
-  const std::uint64_t frames = pipeline_->frames_in();
-  if (frames == 0) throw std::runtime_error(source_.name + ": there is no frame in it");
-  const std::string loss = Loss();
+  if (pipeline_->frames_in() == 0) {
+    throw std::runtime_error(source_.name + ": there is no frame in it");
+  }
+  const RunOutcome outcome = Outcome();
+  const std::string loss = Loss(outcome);
   if (loss.empty()) {
     lines_.close();
     if (!lines_) throw std::runtime_error("detections.jsonl cannot be written");
     lines_path_.Complete();
     if (video_path_) video_path_->Complete();
   }
-  fmt::print("{}\n", Summary());
+  fmt::print("{}\n", Summary(outcome));
   std::fflush(stdout);
   if (!loss.empty()) throw std::runtime_error("Samples were lost: " + loss);
-  if (const std::string cut_off = CutOff(); !cut_off.empty()) {
-    throw std::runtime_error(source_.name + " " + cut_off);
+  if (interrupted_) {
+    fmt::print(stderr, "windhover: {}: interrupted after {} frames\n", source_.name,
+               outcome.frames_in);
+    return kExitInterrupted;
   }
-  if (!interrupted_) return kExitOk;
-  fmt::print(stderr, "windhover: {}: interrupted after {} frames\n", source_.name, frames);
-  return kExitInterrupted;
-}
-
-std::string Job::Summary() const {
-  const std::string device =
-      device_.empty() ? Backend::Create(Setting("device", ""))->device().Describe() : device_;
-  return fmt::format(
-      "{}: {} frames in, {} out; homographies {} published, {} received; detections {} published, "
-      "{} received; {} boxes; {:.1f} frames/s; {}",
-      source_.name, pipeline_->frames_in(), pipeline_->frames_out(), published_.homographies,
-      received_.homographies, published_.detections, received_.detections, received_.boxes,
-      FramesPerSecond(end_of_video_), device);
+  const std::string cut_off = CutOff(outcome);
+  if (!cut_off.empty()) throw std::runtime_error(source_.name + " " + cut_off);
+  return kExitOk;
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ void ReportError(const std::string& text) {
 int Main(int argc, char** argv) {
   CLI::App app("Real-time streaming service for aerial video", "windhover");
   app.set_version_flag("--version", kVersion);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   std::string log_level = "info";
   app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
@@ -154,6 +154,10 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     ReportError(error.what());
+    return kExitUsage;
+  }
+  if (!arguments.command) {
+    ReportError("a command is needed: run, watch, devices or warmup; see windhover --help");
     return kExitUsage;
   }
   spdlog::set_level(spdlog::level::from_str(log_level));

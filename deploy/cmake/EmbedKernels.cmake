@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Embeds OpenCL sources, word for word.
 #
-# windhover_embed_kernels(OUTPUT_VARIABLE FILE.cl...) appends to OUTPUT_VARIABLE one generated .cc a
-# file, which defines windhover::k<FileName>Cl as declared in gpu-kernels/opencl/kernel_sources.h.
-# Made anew whenever the .cl file changes. A #line comes first, so that the OpenCL compiler's messages
-# name the file and its own line numbers.
+# windhover_embed_kernels(OUTPUT_VARIABLE FILE.cl...) appends to OUTPUT_VARIABLE one generated .cc
+# a file, which defines windhover::k<FileName>Cl as declared in
+# gpu-kernels/opencl/kernel_sources.h. Made anew whenever the .cl file changes. A #line comes first,
+# so that the OpenCL compiler's messages name the file and its own line numbers.
 #
 # As a script (cmake -DSOURCE=in.cl -DDESTINATION=out.cc -P EmbedKernels.cmake) it makes one such .cc.
 

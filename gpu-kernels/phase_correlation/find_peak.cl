@@ -13,8 +13,8 @@ INLINE float SquaresBeside(__global const float* row, int width, int skip_x, int
 }
 
 // Finds the highest sample of each tile's correlation surface, the first one in row-major order
-// where several are equal. One work-group a tile. `row_squares` holds `height` values, `best_values`
-// and `best_places` GROUP each.
+// where several are equal. One work-group a tile. `row_squares` holds `height` values,
+// `best_values` and `best_places` GROUP each.
 //
 // A tile's record: column and row of the highest sample, mean square of the samples outside its
 // neighbourhood, coverage of the reference and of the current tile, then the neighbourhood's

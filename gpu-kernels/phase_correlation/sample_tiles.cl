@@ -10,8 +10,8 @@
 __kernel void SampleTiles(__global const uchar* restrict picture, int width, int height, int stride,
                           __global const float* restrict from_tile, int tile_count, int tile_width,
                           int tile_height, __global const float* restrict window_x,
-                          __global const float* restrict window_y,
-                          __global float* restrict samples, __global float* restrict row_sums) {
+                          __global const float* restrict window_y, __global float* restrict samples,
+                          __global float* restrict row_sums) {
   const int tile = get_global_id(1);
   const int first_row = get_global_id(0) * ROWS;
   const float exists = tile < tile_count ? 1.0f : 0.0f;

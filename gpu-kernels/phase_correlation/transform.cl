@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Fourier transforms of tile pairs. A work-item transforms V neighbouring columns at a time, one a
-// lane, and writes the result transposed: two such steps make a two-dimensional transform in natural
-// order. The columns' transform decimates in frequency, in place: a block of values is split by radix
-// 8 or 4 until nothing is left to split.
+// lane, and writes the result transposed: two such steps make a two-dimensional transform in
+// natural order. The columns' transform decimates in frequency, in place: a block of values is
+// split by radix 8 or 4 until nothing is left to split.
 //
 // `columns`, a power of two, is how many there are; all kernels have the global size columns / V x
-// pairs of tiles. Tables: twiddle[k] = exp(-2 pi i k / N), and order[k], where the value of frequency
-// k lies after the last split.
+// pairs of tiles. Tables: twiddle[k] = exp(-2 pi i k / N), and order[k], where the value of
+// frequency k lies after the last split.
 
 // Forward transform of 4 values, natural order.
 INLINE void Transform4(Lanes* re, Lanes* im) {
@@ -42,32 +42,32 @@ INLINE void Transform8(Lanes* re, Lanes* im) {
 
 // Splits every block of `block` values into RADIX blocks, of which block m takes the frequencies
 // RADIX * q + m.
-#define DEFINE_SPLIT(RADIX)                                                                      \
+#define DEFINE_SPLIT(RADIX)                                                                     \
   INLINE void SplitBy##RADIX(Lanes* re, Lanes* im, __global const float2* twiddle, int block) { \
-    const int step = block / RADIX;                                                              \
-    for (int j = 0; j < step; ++j) {                                                             \
-      float2 turn[RADIX];                                                                        \
-      for (int m = 1; m < RADIX; ++m) turn[m] = twiddle[m * j * (N / block)];                 \
-      for (int at = j; at < N; at += block) {                                                 \
-        Lanes r[RADIX], i[RADIX];                                                                \
-        _Pragma("unroll") for (int m = 0; m < RADIX; ++m) {                                      \
-          r[m] = re[at + m * step], i[m] = im[at + m * step];                                    \
-        }                                                                                        \
-        Transform##RADIX(r, i);                                                                  \
-        re[at] = r[0], im[at] = i[0];                                                            \
-        _Pragma("unroll") for (int m = 1; m < RADIX; ++m) {                                      \
-          re[at + m * step] = turn[m].x * r[m] - turn[m].y * i[m];                               \
-          im[at + m * step] = turn[m].x * i[m] + turn[m].y * r[m];                               \
-        }                                                                                        \
-      }                                                                                          \
-    }                                                                                            \
+    const int step = block / RADIX;                                                             \
+    for (int j = 0; j < step; ++j) {                                                            \
+      float2 turn[RADIX];                                                                       \
+      for (int m = 1; m < RADIX; ++m) turn[m] = twiddle[m * j * (N / block)];                   \
+      for (int at = j; at < N; at += block) {                                                   \
+        Lanes r[RADIX], i[RADIX];                                                               \
+        _Pragma("unroll") for (int m = 0; m < RADIX; ++m) {                                     \
+          r[m] = re[at + m * step], i[m] = im[at + m * step];                                   \
+        }                                                                                       \
+        Transform##RADIX(r, i);                                                                 \
+        re[at] = r[0], im[at] = i[0];                                                           \
+        _Pragma("unroll") for (int m = 1; m < RADIX; ++m) {                                     \
+          re[at + m * step] = turn[m].x * r[m] - turn[m].y * i[m];                              \
+          im[at + m * step] = turn[m].x * i[m] + turn[m].y * r[m];                              \
+        }                                                                                       \
+      }                                                                                         \
+    }                                                                                           \
   }
 DEFINE_SPLIT(4)
 DEFINE_SPLIT(8)
 
 // The last split, which needs no twiddles.
-#define DEFINE_FINISH(RADIX)                                             \
-  INLINE void FinishBy##RADIX(Lanes* re, Lanes* im) {                 \
+#define DEFINE_FINISH(RADIX)                                                  \
+  INLINE void FinishBy##RADIX(Lanes* re, Lanes* im) {                         \
     for (int at = 0; at < N; at += RADIX) Transform##RADIX(re + at, im + at); \
   }
 DEFINE_FINISH(4)
@@ -101,10 +101,10 @@ INLINE void TransformLanes(Lanes* re, Lanes* im, __global const float2* twiddle)
 #define INTERLEAVE_LOW(a, b) (float8)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3)
 #define INTERLEAVE_HIGH(a, b) (float8)(a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7)
 #elif V == 16
-#define INTERLEAVE_LOW(a, b)                                                                  \
+#define INTERLEAVE_LOW(a, b)                                                                    \
   (float16)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, \
             a.s7, b.s7)
-#define INTERLEAVE_HIGH(a, b)                                                                 \
+#define INTERLEAVE_HIGH(a, b)                                                                   \
   (float16)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, \
             a.sf, b.sf)
 #endif
@@ -159,8 +159,8 @@ __kernel void TransformSamples(__global const float* restrict samples,
                                __global const float* restrict window_x,
                                __global const float* restrict window_y, float window_sum,
                                __global const float2* restrict twiddle,
-                               __global const int* restrict order, __global float* restrict coverage,
-                               __global float* restrict out) {
+                               __global const int* restrict order,
+                               __global float* restrict coverage, __global float* restrict out) {
   const int x = get_global_id(0) * V;
   const int pair = get_global_id(1);
   const int plane = N * columns;
@@ -175,7 +175,8 @@ __kernel void TransformSamples(__global const float* restrict samples,
     __global const float* column = samples + tile * plane + x;
     for (int y = 0; y < N; ++y) {
       const Lanes value = LOAD(column + y * columns);
-      parts[part][y] = select((Lanes)(0.0f), weight_x * window_y[y] * (value - mean), value >= 0.0f);
+      parts[part][y] =
+          select((Lanes)(0.0f), weight_x * window_y[y] * (value - mean), value >= 0.0f);
     }
   }
   TransformAndStore(parts[0], parts[1], twiddle, order, pair, x, plane, out);
@@ -230,8 +231,9 @@ INLINE Complex LoadMirroredBins(__global const float* row, int x, int columns, i
   return (Complex){LoadMirrored(row, x, columns), LoadMirrored(row + plane, x, columns)};
 }
 
-// Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak of
-// current(x + d) = reference(x) at d), weighted. `damping` holds down what does not rise above it.
+// Cross power conj(reference) * current over its magnitude (eq. 2.18, the sign that puts the peak
+// of current(x + d) = reference(x) at d), weighted. `damping` holds down what does not rise above
+// it.
 INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes weight,
                                     float damping) {
   const Lanes re = current.re * reference.re + current.im * reference.im;
@@ -245,12 +247,14 @@ INLINE Complex NormalisedCrossPower(Complex reference, Complex current, Lanes we
 // With z the transform of a + i b, twice the transform of a is z(k) + conj(z(-k)), that of b is
 // (z(k) - conj(z(-k))) / i; the factors are made up for by four times the noise power. An inverse
 // transform is a forward one between swapped real and imaginary parts: of c_b + i c_a, where c_a
-// and c_b are the cross powers, so that the surfaces of a and b come out as real and imaginary part.
+// and c_b are the cross powers, so that the surfaces of a and b come out as real and imaginary
+// part.
 __kernel void TransformCrossPower(__global const float* restrict reference,
                                   __global const float* restrict current, int columns,
                                   __global const float* restrict weight, float damping,
                                   __global const float2* restrict twiddle,
-                                  __global const int* restrict order, __global float* restrict out) {
+                                  __global const int* restrict order,
+                                  __global float* restrict out) {
   const int x = get_global_id(0) * V;
   const int pair = get_global_id(1);
   const int plane = N * columns;

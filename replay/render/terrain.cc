@@ -37,8 +37,7 @@ Terrain::Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Ve
       colours_(static_cast<std::size_t>(width_) * height_),
       heights_(colours_.size()),
       highest_(static_cast<std::size_t>(blocks_x_) * blocks_y_),
-      highest_around_(highest_.size()),
-      highest_near_(highest_.size()) {
+      highest_around_(highest_.size()) {
   Paint(scene, threads);
   FindHighest();
   Light(scene, threads);
@@ -67,23 +66,30 @@ void Terrain::FindHighest() {
       block = std::max(block, HeightMetres(heights_[static_cast<std::size_t>(y) * width_ + x]));
     }
   }
-  const double highest = *std::max_element(highest_.begin(), highest_.end());
-  const int reach = Ceiling(highest / (texel_m_ * kBlock)) + 1;
+  highest_of_all_ = *std::max_element(highest_.begin(), highest_.end());
   for (int y = 0; y < blocks_y_; ++y) {
     for (int x = 0; x < blocks_x_; ++x) {
       float& around = highest_around_[static_cast<std::size_t>(y) * blocks_x_ + x];
-      float& near = highest_near_[static_cast<std::size_t>(y) * blocks_x_ + x];
-      for (int v = std::max(0, y - reach); v <= std::min(blocks_y_ - 1, y + reach); ++v) {
-        for (int u = std::max(0, x - reach); u <= std::min(blocks_x_ - 1, x + reach); ++u) {
-          // What is lower than it is far away cannot be in the way.
-          const float other = highest_[static_cast<std::size_t>(v) * blocks_x_ + u];
-          const int apart = std::max(std::abs(u - x), std::abs(v - y)) - 1;
-          if (apart <= 0) around = std::max(around, other);
-          if (other >= static_cast<float>(apart * kBlock * texel_m_)) near = std::max(near, other);
+      for (int v = std::max(0, y - 1); v <= std::min(blocks_y_ - 1, y + 1); ++v) {
+        for (int u = std::max(0, x - 1); u <= std::min(blocks_x_ - 1, x + 1); ++u) {
+          around = std::max(around, highest_[static_cast<std::size_t>(v) * blocks_x_ + u]);
         }
       }
     }
   }
+}
+
+float Terrain::HighestIn(float x0, float y0, float x1, float y1) const {
+  const auto block = [](float texel, int end) {
+    return std::clamp(static_cast<int>(std::floor((texel + 0.5F) / kBlock)), 0, end - 1);
+  };
+  float highest = 0;
+  for (int y = block(y0, blocks_y_); y <= block(y1, blocks_y_); ++y) {
+    for (int x = block(x0, blocks_x_); x <= block(x1, blocks_x_); ++x) {
+      highest = std::max(highest, highest_[static_cast<std::size_t>(y) * blocks_x_ + x]);
+    }
+  }
+  return highest;
 }
 
 // Lambert's law on the surface's slopes, and shadows from everything between a spot and the sun.
@@ -93,7 +99,6 @@ void Terrain::Light(const Scene& scene, int threads) {
   const float step_x = sun.x() / std::sqrt(sun.x() * sun.x() + sun.y() * sun.y());
   const float step_y = sun.y() / std::sqrt(sun.x() * sun.x() + sun.y() * sun.y());
   const auto texel = static_cast<float>(texel_m_);
-  const float highest = *std::max_element(highest_.begin(), highest_.end());
   const auto height_at = [this](int x, int y) {
     return HeightMetres(heights_[static_cast<std::size_t>(y) * width_ + x]);
   };
@@ -103,7 +108,7 @@ void Terrain::Light(const Scene& scene, int threads) {
       const auto u = static_cast<int>(static_cast<float>(x) + steps * step_x + 0.5F);
       const auto v = static_cast<int>(static_cast<float>(y) + steps * step_y + 0.5F);
       const float ray = start + steps * texel * sun_slope;
-      if (ray > highest || u < 0 || v < 0 || u >= width_ || v >= height_) return 1.0F;
+      if (ray > highest_of_all_ || u < 0 || v < 0 || u >= width_ || v >= height_) return 1.0F;
       if (highest_[static_cast<std::size_t>(v / kBlock) * blocks_x_ + u / kBlock] < ray) {
         steps += 1 + std::min(StepsToEdge(u, step_x), StepsToEdge(v, step_y));
         continue;

@@ -20,7 +20,7 @@ class Terrain {
     return static_cast<float>(height & ~kFoliage) * 0.01F;
   }
 
-  // Side of the blocks of highest_near(), texels.
+  // Side of the blocks whose greatest heights are known, texels.
   static constexpr int kBlock = 8;
 
   Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
@@ -34,11 +34,10 @@ class Terrain {
   // Blue, green, red and the share of the sun that reaches the spot, from the lowest byte on.
   const std::uint32_t* colours() const { return colours_.data(); }
   const Height* heights() const { return heights_.data(); }
-  // The greatest height, m, in and around the block that holds the texel: no ray that meets the
-  // ground there under up to 45 degrees can have met anything higher.
-  float highest_near(int x, int y) const {
-    return highest_near_[static_cast<std::size_t>(y / kBlock) * blocks_x_ + x / kBlock];
-  }
+  // The greatest height of all, m.
+  float highest() const { return highest_of_all_; }
+  // No texel of the rectangle, which may reach outside, is higher than this, m.
+  float HighestIn(float x0, float y0, float x1, float y1) const;
   // The greatest height, m, within kBlock texels of the texel at least.
   float highest_around(int x, int y) const {
     return highest_around_[static_cast<std::size_t>(y / kBlock) * blocks_x_ + x / kBlock];
@@ -59,10 +58,10 @@ class Terrain {
   int blocks_y_ = 0;
   std::vector<std::uint32_t> colours_;
   std::vector<Height> heights_;
-  // Greatest heights of each block, of it with its eight neighbours, and of all that can hide it.
+  // Greatest heights of each block, of it with its eight neighbours, and of all.
   std::vector<float> highest_;
   std::vector<float> highest_around_;
-  std::vector<float> highest_near_;
+  float highest_of_all_ = 0;
 };
 
 }  // namespace windhover::replay

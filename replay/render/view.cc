@@ -4,11 +4,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "replay/render/fill.h"
 
 namespace windhover::replay {
 namespace {
+
+// Side of the squares of pixels that share a bound on the height of what they see.
+constexpr int kCell = 16;
 
 // What a ray sees: where on the raster, in texels, and how high.
 struct Hit {
@@ -28,10 +32,26 @@ class RayCaster {
         camera_y_(static_cast<float>((camera.y_m - terrain.origin().y()) / terrain.texel_m())),
         altitude_(static_cast<float>(camera.altitude_m)) {}
 
+  // A height that no ray exceeds where it meets something, m: for rays that meet the ground in this
+  // rectangle, texels.
+  float Ceiling(float x0, float y0, float x1, float y1) const {
+    float ceiling = terrain_.highest();
+    // The rays lean towards the camera: what can hide the rectangle lies between it and its shift.
+    for (int i = 0; i < 3 && ceiling > 0; ++i) {
+      const float share = ceiling / altitude_;
+      const auto reach = [&](float low, float high, float camera) {
+        return std::pair(std::min(low, low + share * (camera - low)),
+                         std::max(high, high + share * (camera - high)));
+      };
+      const auto [left, right] = reach(x0, x1, camera_x_);
+      const auto [top, bottom] = reach(y0, y1, camera_y_);
+      ceiling = terrain_.HighestIn(left - 1, top - 1, right + 1, bottom + 1);
+    }
+    return ceiling;
+  }
+
   // (x, y): where the ray meets the ground, texels.
-  Hit Cast(float x, float y) const {
-    const float near =
-        terrain_.highest_near(static_cast<int>(x + 0.5F), static_cast<int>(y + 0.5F));
+  Hit Cast(float x, float y, float near) const {
     if (near <= 0) return {x, y, 0, false, false};
     // A metre up along the ray.
     const float up_x = (camera_x_ - x) / altitude_;
@@ -54,6 +74,12 @@ class RayCaster {
       z -= texel_drop;
     }
     return Refine(x, y, up_x, up_y, 0, above);
+  }
+
+  // The direction over the map from a spot, in texels, to the camera: unit length.
+  Eigen::Vector2f Away(const Eigen::Vector2f& spot) const {
+    const Eigen::Vector2f away(camera_x_ - spot.x(), camera_y_ - spot.y());
+    return away / std::max(away.norm(), 1e-3F);
   }
 
  private:
@@ -155,31 +181,40 @@ void View::DrawTerrain(const Terrain& terrain, const Sun& sun, const Camera& cam
   texels << camera.altitude_m, 0, camera.x_m - terrain.origin().x(), 0, camera.altitude_m,
       camera.y_m - terrain.origin().y(), 0, 0, terrain.texel_m();
   const Eigen::Matrix3d texel_from_pixel = texels * rays_;
-  const double camera_x = (camera.x_m - terrain.origin().x()) / terrain.texel_m();
-  const double camera_y = (camera.y_m - terrain.origin().y()) / terrain.texel_m();
   const auto end_x = static_cast<double>(terrain.width() - 1);
   const auto end_y = static_cast<double>(terrain.height() - 1);
-  for (int row = 0; row < rows_; ++row) {
-    Pixel* pixels = pixels_.data() + static_cast<std::size_t>(row) * width_;
-    Eigen::Vector3d point = texel_from_pixel * Eigen::Vector3d(0, first_row_ + row, 1);
-    for (int x = 0; x < width_; ++x, point += texel_from_pixel.col(0)) {
-      const double u = std::clamp(point.x() / point.z(), 0.0, end_x);
-      const double v = std::clamp(point.y() / point.z(), 0.0, end_y);
-      const Hit hit = caster.Cast(static_cast<float>(u), static_cast<float>(v));
-      const std::uint32_t colour = Sample(terrain, hit.x, hit.y);
-      float light = 1;
-      if (hit.wall) {
-        const Eigen::Vector2f away(static_cast<float>(camera_x - u),
-                                   static_cast<float>(camera_y - v));
-        const float length = std::max(away.norm(), 1e-3F);
-        light = WallLight(hit, terrain, sun, away / length);
+  const auto ground = [&](double x, double row) {
+    const Eigen::Vector3d point = texel_from_pixel * Eigen::Vector3d(x, first_row_ + row, 1);
+    return Eigen::Vector2f(static_cast<float>(std::clamp(point.x() / point.z(), 0.0, end_x)),
+                           static_cast<float>(std::clamp(point.y() / point.z(), 0.0, end_y)));
+  };
+  // Cell by cell, so that rays over open ground need no look at what stands on it.
+  for (int cell_row = 0; cell_row < rows_; cell_row += kCell) {
+    for (int cell_x = 0; cell_x < width_; cell_x += kCell) {
+      const int end_row = std::min(rows_, cell_row + kCell);
+      const int end_column = std::min(width_, cell_x + kCell);
+      const Eigen::Vector2f a = ground(cell_x, cell_row);
+      const Eigen::Vector2f b = ground(end_column - 1, cell_row);
+      const Eigen::Vector2f c = ground(cell_x, end_row - 1);
+      const Eigen::Vector2f d = ground(end_column - 1, end_row - 1);
+      const Eigen::Vector2f low = a.cwiseMin(b).cwiseMin(c).cwiseMin(d);
+      const Eigen::Vector2f high = a.cwiseMax(b).cwiseMax(c).cwiseMax(d);
+      const float ceiling = caster.Ceiling(low.x(), low.y(), high.x(), high.y());
+      for (int row = cell_row; row < end_row; ++row) {
+        for (int x = cell_x; x < end_column; ++x) {
+          const Eigen::Vector2f spot = ground(x, row);
+          const Hit hit = caster.Cast(spot.x(), spot.y(), ceiling);
+          const std::uint32_t colour = Sample(terrain, hit.x, hit.y);
+          const float light = hit.wall ? WallLight(hit, terrain, sun, caster.Away(spot)) : 1.0F;
+          pixels_[static_cast<std::size_t>(row) * width_ + x] = {
+              static_cast<float>(colour & 255) * light,
+              static_cast<float>(colour >> 8 & 255) * light,
+              static_cast<float>(colour >> 16 & 255) * light,
+              hit.height,
+              static_cast<float>(colour >> 24) / 255,
+              0};
+        }
       }
-      pixels[x] = {static_cast<float>(colour & 255) * light,
-                   static_cast<float>(colour >> 8 & 255) * light,
-                   static_cast<float>(colour >> 16 & 255) * light,
-                   hit.height,
-                   static_cast<float>(colour >> 24) / 255,
-                   0};
     }
   }
 }

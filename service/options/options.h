@@ -92,11 +92,11 @@ struct MotionOptions {
   double vote_share = 0.5;
   double forward_backward_margin_px = 2.0;
   int erosion_px = 0;
-  int dilation_px = 2;
+  int dilation_px = -1;
   int min_area_px = 12;
   double max_size = 0.33;
   double min_travel_px = 3.0;
-  int min_track_frames = 4;
+  int min_track_frames = 3;
   int max_coast_frames = 5;
 
   static constexpr auto Fields() {
@@ -114,8 +114,9 @@ struct MotionOptions {
                "Distance from its start at which a point tracked forward and back may end; 0 "
                "switches the forward-backward filter off"),
         Number("erosion", &O::erosion_px, 0, 10, "px", "Radius of the erosion of the seeds left"),
-        Number("dilation", &O::dilation_px, 0, 20, "px",
-               "Radius of the dilation that closes the gaps inside an object"),
+        Number("dilation", &O::dilation_px, -1, 20, "px",
+               "Radius of the dilation that closes the gaps inside an object; -1 takes 1 px for "
+               "each 400 rows of the picture, at least 1"),
         Number("min-area", &O::min_area_px, 1, 100000, "px^2",
                "Smallest area of seeds that makes a detection"),
         Number("max-size", &O::max_size, 0.01, 1.0, "",

@@ -145,6 +145,13 @@ void SeedExtraction::GatherPieces(const BitView& seeds) {
       if (grown == grown_end || grown_.runs[grown].first > run.last) continue;
       grown_of_[i] = grown;
       SeedComponent& component = components_[component_of_[grown]];
+      if (component.area_px == 0) {
+        component.left = run.first;
+        component.top = y;
+      }
+      component.left = std::min(component.left, run.first);
+      component.right = std::max(component.right, run.last);
+      component.bottom = y;
       component.area_px += run.last - run.first + 1;
       ++component.piece_count;
     }

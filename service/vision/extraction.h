@@ -14,6 +14,11 @@ namespace windhover {
 struct SeedComponent {
   int area_px = 0;  // seeds
   Box box;          // of the seeds, in frame coordinates
+  // The same on the grid: pixels left <= x <= right, top <= y <= bottom.
+  int left = 0;
+  int top = 0;
+  int right = 0;
+  int bottom = 0;
   // Index of the component's first piece in SeedExtraction::pieces(), and how many there are.
   int first_piece = 0;
   int piece_count = 0;
@@ -28,6 +33,8 @@ class SeedExtraction {
  public:
   // Radii in px, 0 or more; components of less than `min_area_px` seeds are dropped.
   SeedExtraction(int erosion_px, int dilation_px, int min_area_px);
+
+  void set_dilation(int radius_px) { dilation_px_ = radius_px; }
 
   // Components in scan order of their first pixel. `frame_from_grid` takes pixels of the grid to
   // the frame whose coordinates the boxes are in.

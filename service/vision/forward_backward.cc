@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+
+#include "gpu-kernels/multiversion.h"
 
 namespace windhover {
 namespace {
@@ -26,6 +29,7 @@ constexpr float kMinTexture = ForwardBackwardFilter::kMinTexture;
 
 // Samples a square of `side` x `side` cells around `at`; a cell is the mean of cell_px x cell_px
 // bilinear samples one pixel apart. False where that needs pixels that are unseen or outside.
+WINDHOVER_MULTIVERSION
 bool Sample(const GrayView& image, const Eigen::Vector2f& at, int side, int cell_px, float* out) {
   const int across = side * cell_px;
   const float half = 0.5F * static_cast<float>(across - 1);
@@ -65,11 +69,16 @@ bool Sample(const GrayView& image, const Eigen::Vector2f& at, int side, int cell
   return smallest > 0;
 }
 
+// The cells of a pattern, and zeros up to a whole number of lanes.
+constexpr int kLanes = 16;
+constexpr int kPadded = (kArea + kLanes - 1) / kLanes * kLanes;
+using Patch = std::array<float, kPadded>;
+
 struct Pattern {
-  std::array<float, kArea> value;
+  Patch value{};
   // Gradients with their weighted mean taken out, times the weights.
-  std::array<float, kArea> dx;
-  std::array<float, kArea> dy;
+  Patch dx{};
+  Patch dy{};
   Eigen::Matrix2f inverse_tensor;
   float texture = 0;
 };
@@ -78,18 +87,17 @@ enum class Found { kYes, kNo, kUnseen };
 
 // Sets the weights of a pattern's cells: 1 on seeds and next to them, 0 elsewhere.
 void WeighBySeeds(const BitView& seeds, const Eigen::Vector2f& at, int cell_px, float* weight) {
-  const auto centre_of = [&](float middle, int cell) {
-    return static_cast<int>(std::lround(middle + static_cast<float>((cell - kRadius) * cell_px)));
-  };
   const int reach = (cell_px + 1) / 2;
+  const int left = static_cast<int>(std::lround(at.x())) - kRadius * cell_px - reach;
+  const int middle = static_cast<int>(std::lround(at.y()));
   for (int j = 0; j < kSide; ++j) {
-    const int y = centre_of(at.y(), j);
+    const int y = middle + (j - kRadius) * cell_px;
+    std::uint64_t any = 0;
+    for (int dy = -reach; dy <= reach; ++dy) any |= seeds.Read(left, y + dy);
+    std::uint64_t near = any;
+    for (int dx = 1; dx <= 2 * reach; ++dx) near |= any >> dx;
     for (int i = 0; i < kSide; ++i) {
-      const int x = centre_of(at.x(), i);
-      std::uint64_t any = 0;
-      for (int dy = -reach; dy <= reach; ++dy) any |= seeds.Read(x - reach, y + dy);
-      any &= (std::uint64_t{2} << (2 * reach)) - 1;
-      weight[j * kSide + i] = any != 0 ? 1.0F : 0.0F;
+      weight[j * kSide + i] = static_cast<float>(near >> (i * cell_px) & 1);
     }
   }
 }
@@ -138,24 +146,33 @@ Found TakePattern(const WindowSample& sample, const Eigen::Vector2f& at, int cel
   return Found::kYes;
 }
 
+// The pattern's gradients times what the image differs from it. Summed in lanes, which the compiler
+// may not do by itself.
+WINDHOVER_MULTIVERSION
+Eigen::Vector2f ProjectDifference(const Pattern& pattern, const Patch& value) {
+  std::array<float, kLanes> x{};
+  std::array<float, kLanes> y{};
+  for (int i = 0; i < kPadded; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float difference = value[i + lane] - pattern.value[i + lane];
+      x[lane] += difference * pattern.dx[i + lane];
+      y[lane] += difference * pattern.dy[i + lane];
+    }
+  }
+  return {std::accumulate(x.begin(), x.end(), 0.0F), std::accumulate(y.begin(), y.end(), 0.0F)};
+}
+
 // Moves `at` to where `image` shows the pattern; inverse compositional Lucas-Kanade. The pattern's
 // gradients have no mean, so that a difference in brightness does not pull.
 Found FindPattern(const Pattern& pattern, const GrayView& image, int cell_px, Eigen::Vector2f& at) {
   const float max_correction = kMaxCorrection * static_cast<float>(cell_px);
   const float converged = kConverged * static_cast<float>(cell_px);
   const Eigen::Vector2f expected = at;
-  std::array<float, kArea> value;
+  Patch value{};
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     if (!Sample(image, at, kSide, cell_px, value.data())) return Found::kUnseen;
-    float x = 0;
-    float y = 0;
-    for (int i = 0; i < kArea; ++i) {
-      const float error = value[i] - pattern.value[i];
-      x += error * pattern.dx[i];
-      y += error * pattern.dy[i];
-    }
     const Eigen::Vector2f step =
-        pattern.inverse_tensor * Eigen::Vector2f(x, y) * static_cast<float>(cell_px);
+        pattern.inverse_tensor * ProjectDifference(pattern, value) * static_cast<float>(cell_px);
     at -= step;
     if (!((at - expected).squaredNorm() < max_correction * max_correction)) return Found::kNo;
     if (step.squaredNorm() < converged * converged) return Found::kYes;

@@ -12,6 +12,7 @@
 
 #include "service/vision/extraction.h"
 #include "service/vision/forward_backward.h"
+#include "service/vision/motion_fragments.h"
 #include "service/vision/motion_window.h"
 #include "service/vision/tracking.h"
 #include "service/vision/voting.h"
@@ -23,11 +24,14 @@ namespace {
 constexpr double kBorderPx = 4.0;
 // Seeds of a component among which those are chosen that the forward-backward filter looks at, and
 // how many it looks at. They are spread evenly over the component.
-constexpr int kPointsLookedAt = 16;
-constexpr int kPointsPerComponent = 5;
+constexpr int kPointsLookedAt = 10;
+constexpr int kPointsPerComponent = 4;
 // Share of the points that can be followed that must be kept.
 constexpr double kLeastKept = 0.4;
+// What it says, 0 to 1, where none can be.
 constexpr double kUndecided = 0.5;
+// Rows of the picture for each px of the dilation that is chosen by itself.
+constexpr int kRowsPerDilation = 400;
 // The forward-backward filter's cells grow with the component: one px for each so many px of the
 // square root of its area.
 constexpr double kSidePerCell = 12.0;
@@ -56,6 +60,28 @@ Box Clip(const Box& box, int width, int height) {
   return {left, top, right - left, bottom - top};
 }
 
+// A component that moves, its velocity still on the grid.
+struct Found {
+  MotionCandidate candidate;
+  double area_px = 0.0;
+};
+
+// Adds `part` to `whole`.
+void Join(Found& whole, const Found& part) {
+  MotionCandidate& a = whole.candidate;
+  const MotionCandidate& b = part.candidate;
+  const double share = part.area_px / (whole.area_px + part.area_px);
+  const double right = std::max(a.box.x + a.box.width, b.box.x + b.box.width);
+  const double bottom = std::max(a.box.y + a.box.height, b.box.y + b.box.height);
+  a.box.x = std::min(a.box.x, b.box.x);
+  a.box.y = std::min(a.box.y, b.box.y);
+  a.box.width = right - a.box.x;
+  a.box.height = bottom - a.box.y;
+  a.velocity_px += share * (b.velocity_px - a.velocity_px);
+  a.confidence += share * (b.confidence - a.confidence);
+  whole.area_px += part.area_px;
+}
+
 // Pixels first..last of row y that lie inside a convex polygon; first > last where none does.
 std::pair<int, int> InsideOnRow(std::span<const Eigen::Vector2d> corners, int y, int width) {
   double low = std::numeric_limits<double>::infinity();
@@ -80,7 +106,7 @@ struct MotionDetection::State {
   explicit State(const MotionOptions& motion_options)
       : options(motion_options),
         voting(options.max_speed_px, options.vote_share),
-        extraction(options.erosion_px, options.dilation_px, options.min_area_px),
+        extraction(options.erosion_px, std::max(0, options.dilation_px), options.min_area_px),
         forward_backward(options.forward_backward_margin_px),
         tracking(TrackingOf(options)) {}
 
@@ -89,7 +115,8 @@ struct MotionDetection::State {
   void MaskBorder(const MotionEvidence& evidence);
   void FindCandidates(const MotionEvidence& evidence);
   void ChoosePoints(const SeedComponent& component);
-  bool Examine(const SeedComponent& component, MotionCandidate& candidate, Eigen::Vector2d& at);
+  bool Examine(const SeedComponent& component, MotionCandidate& candidate);
+  void JoinCandidates(const MotionEvidence& evidence);
 
   MotionOptions options;
   VotingFilter voting;
@@ -113,6 +140,8 @@ struct MotionDetection::State {
   BitPlane kept;
   std::vector<Point> points;
   int cell_px = 1;
+  std::vector<Found> found;
+  std::vector<MotionFragment> fragments;  // of the same indices
   std::vector<MotionCandidate> candidates;
 };
 
@@ -157,21 +186,52 @@ void MotionDetection::State::FindCandidates(const MotionEvidence& evidence) {
     kept = inner;
   }
   const BitView left = kept.View();
+  if (options.dilation_px < 0) {
+    extraction.set_dilation(
+        std::max(1, (evidence.frame_height + kRowsPerDilation / 2) / kRowsPerDilation));
+  }
   const std::vector<SeedComponent>& components = extraction.Run(left, evidence.frame_from_grid);
   forward_backward.SetWindow(window, evidence.centre);
 
+  found.clear();
+  fragments.clear();
+  for (const SeedComponent& component : components) {
+    MotionCandidate candidate;
+    candidate.box = component.box;
+    if (!Examine(component, candidate)) continue;
+    found.push_back({candidate, static_cast<double>(component.area_px)});
+    fragments.push_back({component.left, component.top, component.right, component.bottom,
+                         candidate.velocity_px.cast<float>()});
+  }
+  if (evidence.background != nullptr && fragments.size() > 1) {
+    const auto background = evidence.background->Read();
+    JoinFragments({window, evidence.centre, ViewOf(background)}, fragments);
+  } else {
+    for (std::size_t i = 0; i < fragments.size(); ++i) fragments[i].object = static_cast<int>(i);
+  }
+  JoinCandidates(evidence);
+}
+
+// One candidate for each object, in frame coordinates.
+void MotionDetection::State::JoinCandidates(const MotionEvidence& evidence) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto object = static_cast<std::size_t>(fragments[i].object);
+    if (object != i) Join(found[object], found[i]);
+  }
   const auto to_frame = [&](const Eigen::Vector2d& x) -> Eigen::Vector2d {
     return (evidence.frame_from_grid * x.homogeneous()).hnormalized();
   };
   const double max_side = options.max_size * std::min(evidence.frame_width, evidence.frame_height);
-  for (const SeedComponent& component : components) {
-    MotionCandidate candidate;
-    Eigen::Vector2d in_grid;
-    candidate.box = Clip(component.box, evidence.frame_width, evidence.frame_height);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const MotionFragment& fragment = fragments[i];
+    if (fragment.object != static_cast<int>(i)) continue;
+    MotionCandidate candidate = found[i].candidate;
+    candidate.box = Clip(candidate.box, evidence.frame_width, evidence.frame_height);
     if (candidate.box.width <= 0 || candidate.box.height <= 0) continue;
     if (std::max(candidate.box.width, candidate.box.height) > max_side) continue;
-    if (!Examine(component, candidate, in_grid)) continue;
-    candidate.velocity_px = to_frame(in_grid + candidate.velocity_px) - to_frame(in_grid);
+    const Eigen::Vector2d on_grid(0.5 * (fragment.left + fragment.right),
+                                  0.5 * (fragment.top + fragment.bottom));
+    candidate.velocity_px = to_frame(on_grid + candidate.velocity_px) - to_frame(on_grid);
     candidates.push_back(candidate);
   }
 }
@@ -205,20 +265,17 @@ void MotionDetection::State::MaskBorder(const MotionEvidence& evidence) {
 }
 
 // Judges a component by a few of its seeds. Sets the candidate's confidence and its velocity on the
-// grid, and where on the grid that was measured.
-bool MotionDetection::State::Examine(const SeedComponent& component, MotionCandidate& candidate,
-                                     Eigen::Vector2d& at) {
+// grid.
+bool MotionDetection::State::Examine(const SeedComponent& component, MotionCandidate& candidate) {
   const bool votes = options.vote_share > 0;
   const bool follows = options.forward_backward_margin_px > 0;
   ChoosePoints(component);
-  Eigen::Vector2f place = Eigen::Vector2f::Zero();
   Eigen::Vector2f voted = Eigen::Vector2f::Zero();
   Eigen::Vector2f followed = Eigen::Vector2f::Zero();
   float share = 0;
   int judged = 0;
   int kept_points = 0;
   for (const Point& point : points) {
-    place += point.at;
     voted += point.vote.velocity_px;
     share += point.vote.share;
     if (point.texture < ForwardBackwardFilter::kMinTexture) continue;
@@ -232,7 +289,6 @@ bool MotionDetection::State::Examine(const SeedComponent& component, MotionCandi
   }
   if (kept_points < kLeastKept * judged) return false;
   const auto count = static_cast<float>(points.size());
-  at = (place / count).cast<double>();
   candidate.has_velocity = votes || follows;
   const Eigen::Vector2f velocity =
       kept_points > 0 ? followed / static_cast<float>(kept_points) : voted / count;

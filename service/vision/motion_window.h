@@ -29,15 +29,17 @@ struct BitView {
   int words_per_row() const { return (width + 31) / 32; }
   const std::uint32_t* row(int y) const { return words + y * stride; }
   bool at(int x, int y) const { return (row(y)[x / 32] >> (x % 32) & 1U) != 0; }
-  // 33 or more pixels of row y from x on, the first in the lowest bit. May reach outside, where
-  // there are no set pixels.
+  // 64 pixels of row y from x on, the first in the lowest bit. May reach outside, where there are
+  // no set pixels.
   std::uint64_t Read(int x, int y) const {
     if (y < 0 || y >= height) return 0;
     const int index = x >> 5;
-    const std::uint64_t low = index >= 0 && index < words_per_row() ? row(y)[index] : 0;
-    const std::uint64_t high =
-        index + 1 >= 0 && index + 1 < words_per_row() ? row(y)[index + 1] : 0;
-    return (low | high << 32) >> (x & 31);
+    const int shift = x & 31;
+    const auto word = [&](int i) -> std::uint64_t {
+      return i >= 0 && i < words_per_row() ? row(y)[i] : 0;
+    };
+    const std::uint64_t low = word(index) | word(index + 1) << 32;
+    return shift == 0 ? low : low >> shift | word(index + 2) << (64 - shift);
   }
 };
 

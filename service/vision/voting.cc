@@ -227,10 +227,12 @@ void VotingFilter::Judge(std::span<const WindowSample> window, Block& block) {
   for (std::size_t i = 0; i < voter_count_; ++i) {
     const WindowSample& sample = window[voters_[i].sample];
     const auto offset = static_cast<float>(sample.offset_frames);
-    const long x = std::lround(static_cast<float>(block.x) + offset * block.vote.velocity_px.x());
-    const long y = std::lround(static_cast<float>(block.y) + offset * block.vote.velocity_px.y());
+    const auto x = static_cast<int>(
+        std::floor(static_cast<float>(block.x) + offset * block.vote.velocity_px.x() + 0.5F));
+    const auto y = static_cast<int>(
+        std::floor(static_cast<float>(block.y) + offset * block.vote.velocity_px.y() + 0.5F));
     if (x < 0 || y < 0 || x >= sample.registered.width || y >= sample.registered.height) continue;
-    if (sample.registered.row(static_cast<int>(y))[x] != 0) ++seen;
+    if (sample.registered.row(y)[x] != 0) ++seen;
   }
   const double voters = std::max<double>(seen, kLeastSeen * static_cast<double>(voter_count_));
   block.vote.share = static_cast<float>(std::min(1.0, votes / voters));

@@ -177,7 +177,9 @@ class MotionScene {
 // The evidence as the filters see it; holds the mappings.
 class MappedScene {
  public:
-  explicit MappedScene(const MotionEvidence& evidence) : centre(evidence.centre) {
+  explicit MappedScene(const MotionEvidence& evidence)
+      : centre(evidence.centre), ground_(evidence.background->Read()) {
+    background = {ground_.data(), ground_.stride(), ground_.width(), ground_.height()};
     for (const MotionEvidence::Sample& sample : evidence.samples) {
       words_.push_back(sample.seeds->words.Read());
       pixels_.push_back(sample.registered->Read());
@@ -191,8 +193,10 @@ class MappedScene {
 
   std::vector<WindowSample> window;
   std::size_t centre;
+  GrayView background;
 
  private:
+  MappedImage<const std::uint8_t> ground_;
   std::vector<MappedImage<const std::uint32_t>> words_;
   std::vector<MappedImage<const std::uint8_t>> pixels_;
 };

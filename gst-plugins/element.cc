@@ -136,7 +136,8 @@ gboolean SinkQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   ElementHost* host = HostOf(parent);
   switch (GST_QUERY_TYPE(query)) {
     case GST_QUERY_CONTEXT:
-      return host->element->AnswerContext(query) || gst_pad_query_default(pad, parent, query);
+      if (host->element->AnswerContext(query)) return TRUE;
+      return gst_pad_query_default(pad, parent, query);
     case GST_QUERY_DRAIN:
       Guarded(host, GST_FLOW_ERROR, [&] { return host->element->Drain(); });
       return gst_pad_query_default(pad, parent, query);
@@ -153,7 +154,8 @@ gboolean SourceQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   ElementHost* host = HostOf(parent);
   switch (GST_QUERY_TYPE(query)) {
     case GST_QUERY_CONTEXT:
-      return host->element->AnswerContext(query) || gst_pad_query_default(pad, parent, query);
+      if (host->element->AnswerContext(query)) return TRUE;
+      return gst_pad_query_default(pad, parent, query);
     case GST_QUERY_LATENCY: {
       if (!gst_pad_peer_query(host->sink, query)) return FALSE;
       gboolean live = FALSE;

@@ -134,10 +134,11 @@ GstFlowReturn PublishElement::Process(BufferPtr buffer) {
   const GstClockTime pts = GST_BUFFER_PTS(buffer.get());
   const std::int64_t pts_ns = GST_CLOCK_TIME_IS_VALID(pts) ? static_cast<std::int64_t>(pts) : -1;
   GetDetections(buffer.get(), width, height, detections_);
-  const bool written =
-      publisher_->Publish(meta->registration, meta->width, meta->height, pts_ns) &
+  const bool told_homography =
+      publisher_->Publish(meta->registration, meta->width, meta->height, pts_ns);
+  const bool told_detections =
       publisher_->Publish(meta->registration.frame_number, width, height, pts_ns, detections_);
-  if (!written) WarnOfFailures();
+  if (!told_homography || !told_detections) WarnOfFailures();
   return Push(std::move(buffer));
 }
 

@@ -21,19 +21,20 @@ void BitRuns::Collect(const BitView& bits) {
     row_begin[y] = static_cast<int>(runs.size());
     const std::uint32_t* row = bits.row(y);
     int open = -1;  // first pixel of the run that reaches into this word
-    for (int i = 0; i < words; ++i) {
-      const std::uint32_t word = row[i];
-      if (word == (open < 0 ? 0U : ~0U)) continue;
+    for (int i = 0; i < words; i += 2) {
+      std::uint64_t word = row[i];
+      if (i + 1 < words) word |= static_cast<std::uint64_t>(row[i + 1]) << 32;
+      if (word == (open < 0 ? 0 : ~std::uint64_t{0})) continue;
       int bit = 0;
-      while (bit < 32) {
+      while (bit < 64) {
         if (open < 0) {
-          const std::uint32_t rest = word >> bit;
+          const std::uint64_t rest = word >> bit;
           if (rest == 0) break;
           bit += std::countr_zero(rest);
           open = 32 * i + bit;
         }
         bit += std::countr_one(word >> bit);
-        if (bit >= 32) break;
+        if (bit >= 64) break;
         runs.push_back({y, open, 32 * i + bit - 1});
         open = -1;
       }

@@ -39,6 +39,42 @@ void AddVotes(std::uint64_t* planes, int plane_count, int rows_per_plane, std::u
   }
 }
 
+// Adds three votes to each cell at once; destroys them. Needs two planes or more.
+WINDHOVER_MULTIVERSION
+void AddThreeVotes(std::uint64_t* planes, int plane_count, int rows, std::uint64_t* a,
+                   std::uint64_t* b, const std::uint64_t* c) {
+  std::uint64_t* ones = planes;
+  std::uint64_t* twos = planes + rows;
+  for (int row = 0; row < rows; ++row) {
+    const std::uint64_t odd = a[row] ^ b[row];
+    const std::uint64_t one = odd ^ c[row];
+    const std::uint64_t two = (a[row] & b[row]) | (odd & c[row]);
+    const std::uint64_t carry = ones[row] & one;
+    ones[row] ^= one;
+    const std::uint64_t sum = twos[row] ^ two;
+    a[row] = (twos[row] & two) | (sum & carry);
+    twos[row] = sum ^ carry;
+  }
+  for (int plane = 2; plane < plane_count; ++plane) {
+    std::uint64_t* count = planes + static_cast<std::ptrdiff_t>(plane) * rows;
+    for (int row = 0; row < rows; ++row) {
+      const std::uint64_t carry = count[row] & a[row];
+      count[row] ^= a[row];
+      a[row] = carry;
+    }
+  }
+}
+
+// Reads 64 cells of each of `rows` rows, from bit `shift` of a column of words on.
+WINDHOVER_MULTIVERSION
+void ReadCells(const std::uint64_t* column, std::ptrdiff_t column_words, int shift, int rows,
+               std::uint64_t* cells) {
+  const std::uint64_t* next = column + column_words;
+  for (int row = 0; row < rows; ++row) {
+    cells[row] = (column[row] >> shift) | (next[row] << 1 << (63 - shift));
+  }
+}
+
 std::uint64_t BitsBetween(int first, int last) {
   return (~std::uint64_t{0} << first) & (~std::uint64_t{0} >> (63 - last));
 }
@@ -118,27 +154,39 @@ void VotingFilter::PrepareVoters(std::span<const WindowSample> window, std::size
   }
 }
 
+void VotingFilter::TabulateCells(Voter& voter, int length_px) const {
+  if (voter.tabulated_cells_per_px == voter.cells_per_px &&
+      std::ssize(voter.cells_of_px) >= length_px) {
+    return;
+  }
+  voter.tabulated_cells_per_px = voter.cells_per_px;
+  voter.cells_of_px.resize(length_px);
+  for (int px = 0; px < length_px; ++px) {
+    const CellRange range = Footprint(px, voter.cells_per_px);
+    voter.cells_of_px[px] = {range.first + kMargin, range.last + kMargin,
+                             static_cast<int>(px * voter.cells_per_px + 0.5) + kMargin};
+  }
+}
+
 // Frames before the centre are laid out upside down and back to front, so that their votes, too,
 // point to where the object will be.
 void VotingFilter::LayOut(Voter& voter) {
   const bool mirrored = voter.offset_frames < 0;
+  TabulateCells(voter, std::max(width_, height_));
   const auto across = static_cast<int>(std::ceil(width_ * voter.cells_per_px)) + 2 * kMargin;
   const auto down = static_cast<int>(std::ceil(height_ * voter.cells_per_px)) + 2 * kMargin;
-  voter.stride = across / 64 + 2;
-  voter.cells.assign(voter.stride * (down + 1), 0);
+  voter.column_words = down + 1;
+  voter.cells.assign(voter.column_words * (across / 64 + 2), 0);
   runs_.Collect(voter.seeds);
   for (const BitRun& run : runs_.runs) {
-    const int y = mirrored ? height_ - 1 - run.y : run.y;
-    const int left = mirrored ? width_ - 1 - run.last : run.first;
-    const int right = mirrored ? width_ - 1 - run.first : run.last;
-    const CellRange rows = Footprint(y, voter.cells_per_px);
-    const int first = Footprint(left, voter.cells_per_px).first + kMargin;
-    const int last = Footprint(right, voter.cells_per_px).last + kMargin;
-    for (int row = rows.first + kMargin; row <= rows.last + kMargin; ++row) {
-      std::uint64_t* words = voter.cells.data() + row * voter.stride;
-      for (int i = first / 64; i <= last / 64; ++i) {
-        words[i] |= BitsBetween(std::max(first - 64 * i, 0), std::min(last - 64 * i, 63));
-      }
+    const CellsOfPx& rows = voter.cells_of_px[mirrored ? height_ - 1 - run.y : run.y];
+    const int first = voter.cells_of_px[mirrored ? width_ - 1 - run.last : run.first].first;
+    const int last = voter.cells_of_px[mirrored ? width_ - 1 - run.first : run.last].last;
+    for (int i = first / 64; i <= last / 64; ++i) {
+      const std::uint64_t bits =
+          BitsBetween(std::max(first - 64 * i, 0), std::min(last - 64 * i, 63));
+      std::uint64_t* column = voter.cells.data() + i * voter.column_words;
+      for (int row = rows.first; row <= rows.last; ++row) column[row] |= bits;
     }
   }
 }
@@ -212,14 +260,7 @@ void VotingFilter::Judge(std::span<const WindowSample> window, Block& block) {
   block.kept = false;
   plane_count_ = std::bit_width(voter_count_);
   for (int plane = 0; plane < plane_count_; ++plane) planes_[plane].fill(0);
-  for (std::size_t i = 0; i < voter_count_; ++i) {
-    const int planes = std::bit_width(i + 1);
-    if (voters_[i].laid_out) {
-      CastLaidOut(voters_[i], block.x, block.y, planes);
-    } else {
-      CastSeedBySeed(voters_[i], block.x, block.y, planes);
-    }
-  }
+  CastAll(block.x, block.y);
   const int votes = FindMaximum(block.vote.velocity_px);
   if (votes == 0) return;
 
@@ -227,11 +268,12 @@ void VotingFilter::Judge(std::span<const WindowSample> window, Block& block) {
   for (std::size_t i = 0; i < voter_count_; ++i) {
     const WindowSample& sample = window[voters_[i].sample];
     const auto offset = static_cast<float>(sample.offset_frames);
-    const auto x = static_cast<int>(
-        std::floor(static_cast<float>(block.x) + offset * block.vote.velocity_px.x() + 0.5F));
-    const auto y = static_cast<int>(
-        std::floor(static_cast<float>(block.y) + offset * block.vote.velocity_px.y() + 0.5F));
-    if (x < 0 || y < 0 || x >= sample.registered.width || y >= sample.registered.height) continue;
+    const Eigen::Vector2f at =
+        block.at() + offset * block.vote.velocity_px + Eigen::Vector2f::Constant(0.5F);
+    if (at.minCoeff() < 0) continue;
+    const int x = static_cast<int>(at.x());
+    const int y = static_cast<int>(at.y());
+    if (x >= sample.registered.width || y >= sample.registered.height) continue;
     if (sample.registered.row(y)[x] != 0) ++seen;
   }
   const double voters = std::max<double>(seen, kLeastSeen * static_cast<double>(voter_count_));
@@ -239,22 +281,38 @@ void VotingFilter::Judge(std::span<const WindowSample> window, Block& block) {
   block.kept = block.vote.share >= share_;
 }
 
-// Adds a voter's votes to the lowest `planes` bit planes, which hold all counts that there can be.
-void VotingFilter::CastLaidOut(const Voter& voter, int x, int y, int planes) {
-  const bool mirrored = voter.offset_frames < 0;
-  const auto at = [&](int px) {
-    return static_cast<int>(std::lround(px * voter.cells_per_px)) + kMargin - kMiddle;
-  };
-  const int left = at(mirrored ? width_ - 1 - x : x);
-  const int top = at(mirrored ? height_ - 1 - y : y);
-  const std::uint64_t* words = voter.cells.data() + top * voter.stride + left / 64;
-  const int shift = left % 64;
-  CellRows votes;
-  for (int row = 0; row < kCells; ++row, words += voter.stride) {
-    votes[row] = (words[0] >> shift) | (words[1] << 1 << (63 - shift));
-    votes[row] &= ~std::uint64_t{0} >> (64 - kCells);
+// Counts all votes for the seed at (x, y). The lowest bit_width(n) planes hold any count up to n.
+void VotingFilter::CastAll(int x, int y) {
+  std::size_t cast = 0;
+  std::array<CellRows, 3> votes;
+  std::size_t waiting = 0;
+  for (std::size_t i = 0; i < voter_count_; ++i) {
+    if (!voters_[i].laid_out) {
+      CastSeedBySeed(voters_[i], x, y, std::bit_width(++cast));
+      continue;
+    }
+    ReadLaidOut(voters_[i], x, y, votes[waiting++]);
+    if (waiting < votes.size()) continue;
+    cast += waiting;
+    AddThreeVotes(planes_[0].data(), std::bit_width(cast), kRows, votes[0].data(), votes[1].data(),
+                  votes[2].data());
+    waiting = 0;
   }
-  AddVotes(planes_[0].data(), planes, kRows, votes.data(), 0, kCells - 1);
+  while (waiting > 0) {
+    AddVotes(planes_[0].data(), std::bit_width(++cast), kRows, votes[--waiting].data(), 0,
+             kRows - 1);
+  }
+}
+
+// What a frame that is laid out votes for the seed at (x, y). What lies past the last cell of a row
+// comes along, too.
+void VotingFilter::ReadLaidOut(const Voter& voter, int x, int y, CellRows& votes) const {
+  const bool mirrored = voter.offset_frames < 0;
+  const int left = voter.cells_of_px[mirrored ? width_ - 1 - x : x].middle - kMiddle;
+  const int top = voter.cells_of_px[mirrored ? height_ - 1 - y : y].middle - kMiddle;
+  ReadCells(voter.cells.data() + (left / 64) * voter.column_words + top, voter.column_words,
+            left % 64, kCells, votes.data());
+  votes[kCells] = 0;
 }
 
 void VotingFilter::CastSeedBySeed(const Voter& voter, int x, int y, int planes) {
@@ -291,7 +349,7 @@ void VotingFilter::CastSeedBySeed(const Voter& voter, int x, int y, int planes) 
 // The largest count in V, and the velocity in the middle of the cells that reach it.
 int VotingFilter::FindMaximum(Eigen::Vector2f& velocity_px) const {
   CellRows best;
-  best.fill(~std::uint64_t{0});
+  best.fill(~std::uint64_t{0} >> (64 - kCells));
   int votes = 0;
   for (int plane = plane_count_ - 1; plane >= 0; --plane) {
     std::uint64_t any = 0;

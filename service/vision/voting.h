@@ -63,6 +63,12 @@ class VotingFilter {
     int first;
     int last;
   };
+  // Cells of a pixel's footprint, along one axis, and the one that it lies in.
+  struct CellsOfPx {
+    int first;
+    int last;
+    int middle;
+  };
   // How the seeds of one frame vote. Where its pixels are not much larger than cells, the seeds are
   // laid out as V sees them once for all blocks: `cells` is a bit picture of footprints, from which
   // a block reads its window. The footprints of nearer frames are large and their windows small:
@@ -73,8 +79,12 @@ class VotingFilter {
     double cells_per_px;
     int reach;  // half the window, px
     bool laid_out;
-    std::ptrdiff_t stride;  // 64-bit words from one row of `cells` to the next
+    // Columns of 64 cells: the words of one column lie one below the other, so that a window is
+    // read from two stretches of memory.
     std::vector<std::uint64_t> cells;
+    std::ptrdiff_t column_words;
+    std::vector<CellsOfPx> cells_of_px;
+    double tabulated_cells_per_px = 0.0;
     BitView seeds;
     std::vector<CellRange> footprint;  // of a seed at distance d: footprint[d + reach]
   };
@@ -83,16 +93,20 @@ class VotingFilter {
     int y;  // of the representative seed
     SeedVote vote;
     bool kept;
+
+    Eigen::Vector2f at() const { return {static_cast<float>(x), static_cast<float>(y)}; }
   };
   static CellRange Footprint(double px, double cells_per_px);
 
   void PrepareVoters(std::span<const WindowSample> window, std::size_t centre);
+  void TabulateCells(Voter& voter, int length_px) const;
   void LayOut(Voter& voter);
   void CollectBlocks(const BitView& seeds);
   bool CollectBlocksOfSize(const BitView& seeds, int size);
   void AddBlock(const BitView& seeds, int bx, int by, int size);
   void Judge(std::span<const WindowSample> window, Block& block);
-  void CastLaidOut(const Voter& voter, int x, int y, int planes);
+  void CastAll(int x, int y);
+  void ReadLaidOut(const Voter& voter, int x, int y, CellRows& votes) const;
   void CastSeedBySeed(const Voter& voter, int x, int y, int planes);
   int FindMaximum(Eigen::Vector2f& velocity_px) const;
 

@@ -15,7 +15,7 @@
 #include "replay/format/pending_folder.h"
 #include "replay/format/sequence.h"
 #include "replay/format/text_lines.h"
-#include "tests/replay/temporary_folder.h"
+#include "tests/service/app_process.h"
 
 namespace windhover::replay {
 namespace {
@@ -40,7 +40,7 @@ std::string Complaint(Action&& action) {
 }
 
 TEST(SequenceFormat, InfoComesBackAsWritten) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   SequenceInfo info;
   info.name = "01-outskirts";
   info.frame_rate_hz = 29.97;
@@ -58,7 +58,7 @@ TEST(SequenceFormat, InfoComesBackAsWritten) {
 }
 
 TEST(SequenceFormat, ReadsTheFilesThatOthersWrite) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   WriteText(folder.path() / "seqinfo.ini",
             "[Sequence]\r\nname=MOT17-02\r\nimDir=img1\r\nframeRate=30\r\nseqLength=600\r\n"
             "imWidth=1920\r\nimHeight=1080\r\nimExt=.jpg\r\n\r\n");
@@ -68,7 +68,7 @@ TEST(SequenceFormat, ReadsTheFilesThatOthersWrite) {
 }
 
 TEST(SequenceFormat, BadInfoIsNamedWithLineAndReason) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_THAT(Complaint([&] { ReadSequenceInfo(folder.path()); }), HasSubstr("cannot be read"));
   const auto complain = [&](const char* text) {
     WriteText(folder.path() / "seqinfo.ini", text);
@@ -82,7 +82,7 @@ TEST(SequenceFormat, BadInfoIsNamedWithLineAndReason) {
 }
 
 TEST(LabelFormat, BoxesAreOneBasedInTheFileAndZeroBasedInside) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "gt" / "gt.txt";
   WriteTruthBoxes(file, {{3, 17, {0, 9.5, 20, 10.25}, 1.0, 0.5}});
   EXPECT_EQ(Content(file), "3,17,1,10.5,20,10.25,1,1,0.5\n");
@@ -98,7 +98,7 @@ TEST(LabelFormat, BoxesAreOneBasedInTheFileAndZeroBasedInside) {
 }
 
 TEST(LabelFormat, DetectionsHaveTenColumns) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "det.txt";
   WriteDetections(file, {{1, 2, {3, 4, 5, 6}, 0.25}});
   EXPECT_EQ(Content(file), "1,2,4,5,5,6,0.25,-1,-1,-1\n");
@@ -110,7 +110,7 @@ TEST(LabelFormat, DetectionsHaveTenColumns) {
 }
 
 TEST(LabelFormat, JsonLinesOfTheSubscriberAreRead) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "detections.jsonl";
   WriteText(file, R"({"type":"homography","stream":"a","frame":0})"
                   "\n"
@@ -137,7 +137,7 @@ TEST(LabelFormat, JsonLinesOfTheSubscriberAreRead) {
 }
 
 TEST(LabelFormat, MalformedLinesAreNamedWithLineAndReason) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "gt.txt";
   const auto complain = [&](const char* text) {
     WriteText(file, text);
@@ -155,7 +155,7 @@ TEST(LabelFormat, MalformedLinesAreNamedWithLineAndReason) {
 }
 
 TEST(HomographyFormat, KeepsEveryBit) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "homography.txt";
   Eigen::Matrix3d matrix;
   matrix << 0.99 / 3, -1e-3 / 7, 12.1 / 9, 1.0 / 3, 1.01, -7e5 / 3, 1e-7 / 3, -2e-6 / 7, 1;
@@ -167,7 +167,7 @@ TEST(HomographyFormat, KeepsEveryBit) {
 }
 
 TEST(HomographyFormat, MalformedLinesAreNamedWithLineAndReason) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "homography.txt";
   const auto complain = [&](const char* text) {
     WriteText(file, text);
@@ -181,7 +181,7 @@ TEST(HomographyFormat, MalformedLinesAreNamedWithLineAndReason) {
 }
 
 TEST(PendingFolder, AppearsOnlyWhenComplete) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::filesystem::path final_path = folder.path() / "flight";
   {
     const PendingFolder pending(final_path);
@@ -198,7 +198,7 @@ TEST(PendingFolder, AppearsOnlyWhenComplete) {
 }
 
 TEST(PendingFolder, NeverReplacesWhatIsNoSequence) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   WriteText(folder.path() / "home" / "letter.txt", "dear\n");
   EXPECT_THAT(Complaint([&] { PendingFolder(folder.path() / "home"); }), HasSubstr("no sequence"));
   EXPECT_THAT(Complaint([&] { PendingFolder(folder.path() / "home" / "letter.txt"); }),
@@ -207,7 +207,7 @@ TEST(PendingFolder, NeverReplacesWhatIsNoSequence) {
 }
 
 TEST(FrameSource, NamesWhatIsMissingOrWrong) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_THAT(Complaint([&] { OpenFrames(folder.path() / "none"); }), HasSubstr("does not exist"));
   EXPECT_THAT(Complaint([&] { OpenFrames(folder.path()); }), HasSubstr("seqinfo.ini"));
   WriteText(folder.path() / "text.mp4", "no video\n");

@@ -40,8 +40,9 @@ class SequenceFrames : public FrameSource {
 
 class VideoFrames : public FrameSource {
  public:
+  // FFmpeg alone: what else OpenCV tries where that fails looks for cameras and writes to stderr.
   explicit VideoFrames(const std::filesystem::path& file)
-      : file_(file), capture_(file.string(), cv::CAP_ANY) {
+      : file_(file), capture_(file.string(), cv::CAP_FFMPEG) {
     if (!capture_.isOpened()) throw FormatError(file, "is no video that can be read");
   }
 

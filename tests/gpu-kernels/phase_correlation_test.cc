@@ -175,7 +175,6 @@ TEST_P(PhaseCorrelationTest, IdenticalPicturesDoNotShift) {
   }
 }
 
-// current(x + d) = reference(x): what the camera leaves to the left moves to the right.
 // current(x + d) = reference(x): what the camera leaves to the left moves to the right. The window
 // pulls large shifts towards 0 a little.
 TEST_P(PhaseCorrelationTest, MeasuresKnownShiftsWithTheRightSign) {

@@ -12,6 +12,10 @@ std::string Percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f} %", 100 * *share) : "-";
 }
 
+std::string Pixels(const std::optional<double>& distance) {
+  return distance ? fmt::format("{:.4f} px", *distance) : "-";
+}
+
 }  // namespace
 
 std::string Describe(const MotionScore& score, double overlap) {
@@ -24,10 +28,15 @@ std::string Describe(const MotionScore& score, double overlap) {
 }
 
 std::string Describe(const RegistrationScore& score) {
-  return fmt::format(
-      "registration over {} pairs: RMS mean {:.4f} px, max {:.4f} px, {} over {} px, drift {:.3f} "
-      "px at the last frame",
-      score.rms_px.size(), score.mean_px, score.max_px, score.failures, kFailurePx, score.drift_px);
+  std::string text = fmt::format(
+      "registration over {} pairs: RMS mean {}, max {}, {} over {} px, drift {:.3f} px at the last "
+      "frame",
+      score.pairs, Pixels(score.mean_px), Pixels(score.max_px), score.failures, kFailurePx,
+      score.drift_px);
+  if (score.without_ground > 0) {
+    text += fmt::format("; {} pairs show no common ground", score.without_ground);
+  }
+  return text;
 }
 
 }  // namespace windhover::replay

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -92,7 +93,10 @@ class Contestant {
       times_ms_.push_back(taken);
       const Eigen::Matrix3d truth =
           flight.first_from_frame[i - 1].inverse() * flight.first_from_frame[i];
-      rms_sum_ += RegistrationRms(previous_from_frame, truth, flight.width, flight.height);
+      const std::optional<double> rms =
+          RegistrationRms(previous_from_frame, truth, flight.width, flight.height);
+      if (!rms) continue;
+      rms_sum_ += *rms;
       ++rms_pairs_;
     }
   }

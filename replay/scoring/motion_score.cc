@@ -14,6 +14,38 @@ std::optional<double> Ratio(double part, double whole) {
   return part / whole;
 }
 
+// Area of `box` that lies on any of `others`, over its own.
+double CoveredShare(const Box& box, const std::vector<Box>& others) {
+  std::vector<Box> pieces;  // what they cover, which may overlap
+  std::vector<double> edges;
+  for (const Box& other : others) {
+    const double left = std::max(box.x, other.x);
+    const double right = std::min(box.x + box.width, other.x + other.width);
+    const double top = std::max(box.y, other.y);
+    const double bottom = std::min(box.y + box.height, other.y + other.height);
+    if (left >= right || top >= bottom) continue;
+    pieces.push_back({left, top, right - left, bottom - top});
+    edges.insert(edges.end(), {left, right});
+  }
+  std::sort(edges.begin(), edges.end());
+  std::sort(pieces.begin(), pieces.end(), [](const Box& a, const Box& b) { return a.y < b.y; });
+  // Column by column between neighbouring edges, where the pieces' heights add up.
+  double area = 0;
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    const double middle = (edges[i - 1] + edges[i]) / 2;
+    double height = 0;
+    double reached = box.y;
+    for (const Box& piece : pieces) {
+      if (piece.x > middle || piece.x + piece.width < middle) continue;
+      const double bottom = piece.y + piece.height;
+      height += std::max(0.0, bottom - std::max(reached, piece.y));
+      reached = std::max(reached, bottom);
+    }
+    area += height * (edges[i] - edges[i - 1]);
+  }
+  return area / (box.width * box.height);
+}
+
 }  // namespace
 
 std::optional<double> MotionScore::precision() const { return Ratio(hits, detections); }
@@ -38,15 +70,16 @@ FrameMatch MatchFrame(const std::vector<LabelledBox>& truth,
   FrameMatch match = {std::vector<int>(detections.size(), FrameMatch::kMiss),
                       std::vector<int>(truth.size(), FrameMatch::kMiss)};
   std::vector<Pair> pairs;
-  std::vector<bool> ignorable(detections.size());
+  std::vector<Box> ignored;
   for (std::size_t t = 0; t < truth.size(); ++t) {
-    if (truth[t].score == 0) match.detection_of_truth[t] = FrameMatch::kIgnored;
+    if (truth[t].score == 0) {
+      match.detection_of_truth[t] = FrameMatch::kIgnored;
+      ignored.push_back(truth[t].box);
+      continue;
+    }
     for (std::size_t d = 0; d < detections.size(); ++d) {
       const double overlap = Overlap(truth[t].box, detections[d].box);
-      if (overlap <= least_overlap) continue;
-      if (truth[t].score == 0) {
-        ignorable[d] = true;
-      } else {
+      if (overlap > least_overlap) {
         pairs.push_back({overlap, static_cast<int>(d), static_cast<int>(t)});
       }
     }
@@ -76,7 +109,7 @@ FrameMatch MatchFrame(const std::vector<LabelledBox>& truth,
     place(pair.detection);
   }
   for (std::size_t d = 0; d < detections.size(); ++d) {
-    if (match.truth_of_detection[d] == FrameMatch::kMiss && ignorable[d]) {
+    if (candidates[d].empty() && CoveredShare(detections[d].box, ignored) >= kIgnoredShare) {
       match.truth_of_detection[d] = FrameMatch::kIgnored;
     }
   }

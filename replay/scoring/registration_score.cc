@@ -28,8 +28,8 @@ void ForEachGridPoint(int width, int height, Visit&& visit) {
 
 }  // namespace
 
-double RegistrationRms(const Eigen::Matrix3d& measured, const Eigen::Matrix3d& truth, int width,
-                       int height) {
+std::optional<double> RegistrationRms(const Eigen::Matrix3d& measured, const Eigen::Matrix3d& truth,
+                                      int width, int height) {
   double sum = 0;
   int points = 0;
   ForEachGridPoint(width, height, [&](const Eigen::Vector2d& point) {
@@ -45,7 +45,8 @@ double RegistrationRms(const Eigen::Matrix3d& measured, const Eigen::Matrix3d& t
                          : std::numeric_limits<double>::infinity();
     ++points;
   });
-  return points > 0 ? std::sqrt(sum / points) : 0;
+  if (points == 0) return std::nullopt;
+  return std::sqrt(sum / points);
 }
 
 RegistrationScore ScoreRegistration(const std::vector<Eigen::Matrix3d>& measured,
@@ -59,20 +60,28 @@ RegistrationScore ScoreRegistration(const std::vector<Eigen::Matrix3d>& measured
     return Eigen::Matrix3d(matrix / matrix(2, 2));
   };
   RegistrationScore score;
+  if (truth.empty()) return score;
+  double sum = 0;
   for (std::size_t i = 1; i < truth.size(); ++i) {
-    const double rms =
+    const std::optional<double> rms =
         RegistrationRms(normalised(measured[i - 1].inverse() * measured[i]),
                         normalised(truth[i - 1].inverse() * truth[i]), width, height);
     score.rms_px.push_back(rms);
-    score.mean_px += rms;
-    score.max_px = std::max(score.max_px, rms);
-    if (rms > kFailurePx) ++score.failures;
+    if (!rms) {
+      ++score.without_ground;
+      continue;
+    }
+    ++score.pairs;
+    sum += *rms;
+    score.max_px = std::max(score.max_px.value_or(0), *rms);
+    if (*rms > kFailurePx) ++score.failures;
   }
-  if (score.rms_px.empty()) return score;
-  score.mean_px /= static_cast<double>(score.rms_px.size());
+  if (score.pairs > 0) score.mean_px = sum / score.pairs;
+  // A picture always has all of its ground in common with itself.
   score.drift_px = RegistrationRms(normalised(truth.back().inverse() * truth.front() *
                                               measured.front().inverse() * measured.back()),
-                                   Eigen::Matrix3d::Identity(), width, height);
+                                   Eigen::Matrix3d::Identity(), width, height)
+                       .value();
   return score;
 }
 

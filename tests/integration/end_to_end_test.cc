@@ -94,7 +94,8 @@ void ExpectExactRegistration(const Outcome& outcome) {
     const Eigen::Matrix3d truth =
         flight.truth[i - 1].first_from_frame.inverse() * flight.truth[i].first_from_frame;
     EXPECT_LE(RegistrationRms(outcome.registrations[i].previous_from_frame, truth,
-                              flight.plan.width, flight.plan.height),
+                              flight.plan.width, flight.plan.height)
+                  .value(),
               kMostRmsPx)
         << "frame " << i;
     EXPECT_NE(outcome.registrations[i].quality, RegistrationQuality::kLost) << "frame " << i;
@@ -138,12 +139,14 @@ TEST(EndToEnd, TheElementsAgreeWithTheLibrary) {
   for (std::size_t i = 0; i < kFrames; ++i) offline.Push(flight.bgr[i]);
   offline.Drain();
   ASSERT_EQ(offline.outcomes().size(), kFrames);
-  // The luma of I420 covers 16 to 235, that of the library 0 to 255: small differences, same
-  // answer.
+  // Both make luma of the whole range from the same BGR pictures, with weights that are rounded
+  // differently: a grey level here and there, same answer. A video in I420 is not covered by this:
+  // of it the elements take the Y plane as it is, and the library what OpenCV makes of it.
   for (std::size_t i = 1; i < kFrames; ++i) {
     EXPECT_LE(RegistrationRms(outcome.registrations[i].previous_from_frame,
                               offline.outcomes()[i].registration.previous_from_frame,
-                              flight.plan.width, flight.plan.height),
+                              flight.plan.width, flight.plan.height)
+                  .value(),
               0.02)
         << "frame " << i;
   }

@@ -83,8 +83,8 @@ TEST(OfflineDetection, EveryFrameComesOutOnceAndTheSameEachTime) {
 TEST(OfflineDetection, ComposedHomographiesFollowTheTruth) {
   const RegistrationScore score = ScoreRegistration(FirstFromFrame(DetectOffline()),
                                                     TheSmallFlight().first_from_frame, 320, 240);
-  EXPECT_EQ(score.rms_px.size(), static_cast<std::size_t>(kFrames - 1));
-  EXPECT_LT(score.mean_px, 0.3);
+  EXPECT_EQ(score.pairs, kFrames - 1);
+  EXPECT_LT(score.mean_px.value(), 0.3);
 }
 
 TEST(OfflineDetection, RefusesFramesThatAreTooSmall) {
@@ -102,7 +102,9 @@ TEST(KltRegistration, FollowsTheFlightAndStartsWithTheIdentity) {
                                         : composed.back() * previous_from_frame);
   }
   EXPECT_EQ(composed.front(), Eigen::Matrix3d::Identity());
-  EXPECT_LT(ScoreRegistration(composed, TheSmallFlight().first_from_frame, 320, 240).max_px, 0.3);
+  const RegistrationScore score =
+      ScoreRegistration(composed, TheSmallFlight().first_from_frame, 320, 240);
+  EXPECT_LT(score.max_px.value(), 0.3);
 }
 
 TEST(KltRegistration, FlatPicturesGiveTheIdentity) {

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -96,6 +97,39 @@ TEST(MotionScore, TruthThatDoesNotCountIsLeftOut) {
   EXPECT_EQ(*ScoreMotion(truth, {}).recall(), 0);
 }
 
+TEST(MotionScore, ADuplicateIsNoLessFalseBesideTruthThatDoesNotCount) {
+  // The second detection lies on the object, and on its ignored neighbour by a sixth.
+  const std::vector<LabelledBox> truth = {At(1, 0, 0), At(1, 8, 0, 10, 10, 0)};
+  const MotionScore score = ScoreMotion(truth, {At(1, 0, 0), At(1, 1, 0)});
+  EXPECT_EQ(score.hits, 1);
+  EXPECT_EQ(score.detections, 2);
+  // Not even where it lies on the neighbour by more than half.
+  EXPECT_EQ(ScoreMotion(truth, {At(1, 0, 0), At(1, 5, 0)}).detections, 2);
+}
+
+TEST(MotionScore, AFalseAlarmAroundTruthThatDoesNotCountIsOne) {
+  const std::vector<LabelledBox> truth = {At(1, 15, 15, 10, 10, 0)};
+  EXPECT_EQ(ScoreMotion(truth, {At(1, 0, 0, 40, 40)}).detections, 1);
+}
+
+TEST(MotionScore, ADetectionWithinLargeTruthThatDoesNotCountIsIgnored) {
+  const std::vector<LabelledBox> truth = {At(1, 0, 0, 200, 200, 0)};
+  EXPECT_EQ(ScoreMotion(truth, {At(1, 100, 100)}).detections, 0);
+  // By half of its area, not less.
+  EXPECT_EQ(ScoreMotion(truth, {At(1, 195, 100)}).detections, 0);
+  EXPECT_EQ(ScoreMotion(truth, {At(1, 195.1, 100)}).detections, 1);
+}
+
+TEST(MotionScore, TruthThatDoesNotCountCoversTogetherAndOnlyOnce) {
+  // Two quarters side by side are a half; the same quarter twice is a quarter.
+  const LabelledBox left = At(1, 0, 0, 5, 5, 0);
+  const LabelledBox right = At(1, 5, 0, 5, 5, 0);
+  EXPECT_EQ(ScoreMotion({left, right}, {At(1, 0, 0)}).detections, 0);
+  EXPECT_EQ(ScoreMotion({left, left}, {At(1, 0, 0)}).detections, 1);
+  EXPECT_EQ(ScoreMotion({left, At(1, 0, 2, 5, 6, 0)}, {At(1, 0, 0)}).detections, 1);
+  EXPECT_EQ(ScoreMotion({left, At(1, 0, 4, 5, 6, 0)}, {At(1, 0, 0)}).detections, 0);
+}
+
 TEST(MotionScore, FramesAreApart) { EXPECT_EQ(ScoreMotion({At(1, 0, 0)}, {At(2, 0, 0)}).hits, 0); }
 
 Eigen::Matrix3d Shift(double x, double y) {
@@ -106,7 +140,7 @@ Eigen::Matrix3d Shift(double x, double y) {
 }
 
 TEST(RegistrationScore, AShiftIsItsOwnLength) {
-  EXPECT_NEAR(RegistrationRms(Shift(3, 4), Shift(0, 0), 640, 480), 5, 1e-12);
+  EXPECT_NEAR(RegistrationRms(Shift(3, 4), Shift(0, 0), 640, 480).value(), 5, 1e-12);
   EXPECT_EQ(RegistrationRms(Shift(7, -3), Shift(7, -3), 640, 480), 0);
 }
 
@@ -115,18 +149,18 @@ TEST(RegistrationScore, AStretchByHand) {
   // x = 0, 100/12, ..., 100 is 1e-4 * 1e4 * (sum of i^2, 0..12) / (13 * 144).
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
   stretch(0, 0) = 1.01;
-  EXPECT_NEAR(RegistrationRms(stretch, Shift(0, 0), 101, 101), std::sqrt(650.0 / (13 * 144)),
-              1e-12);
+  EXPECT_NEAR(RegistrationRms(stretch, Shift(0, 0), 101, 101).value(),
+              std::sqrt(650.0 / (13 * 144)), 1e-12);
 }
 
 TEST(RegistrationScore, OnlyGroundThatBothSeeCounts) {
   // Truth moves all but the left half out; the error lies on the right and so is not seen.
   Eigen::Matrix3d bent = Shift(320, 0);
   bent(2, 0) = 1e-4;
-  const double all = RegistrationRms(bent, Shift(0, 0), 640, 480);
-  const double half = RegistrationRms(bent, Shift(320, 0), 640, 480);
+  const double all = RegistrationRms(bent, Shift(0, 0), 640, 480).value();
+  const double half = RegistrationRms(bent, Shift(320, 0), 640, 480).value();
   EXPECT_GT(all, half);
-  EXPECT_EQ(RegistrationRms(bent, Shift(700, 0), 640, 480), 0);
+  EXPECT_EQ(RegistrationRms(bent, Shift(700, 0), 640, 480), std::nullopt);
 }
 
 TEST(RegistrationScore, GroundSentBehindTheCameraIsInfinitelyWrong) {
@@ -144,11 +178,13 @@ TEST(RegistrationScore, ConsecutiveErrorsAndDriftByHand) {
                                                  Shift(33, 0)};
   const RegistrationScore score = ScoreRegistration(measured, truth, 640, 480);
   ASSERT_EQ(score.rms_px.size(), 3U);
-  EXPECT_NEAR(score.rms_px[0], 0, 1e-9);
-  EXPECT_NEAR(score.rms_px[1], 3, 1e-9);
-  EXPECT_NEAR(score.rms_px[2], 0, 1e-9);
-  EXPECT_NEAR(score.mean_px, 1, 1e-9);
-  EXPECT_NEAR(score.max_px, 3, 1e-9);
+  EXPECT_NEAR(score.rms_px[0].value(), 0, 1e-9);
+  EXPECT_NEAR(score.rms_px[1].value(), 3, 1e-9);
+  EXPECT_NEAR(score.rms_px[2].value(), 0, 1e-9);
+  EXPECT_EQ(score.pairs, 3);
+  EXPECT_EQ(score.without_ground, 0);
+  EXPECT_NEAR(score.mean_px.value(), 1, 1e-9);
+  EXPECT_NEAR(score.max_px.value(), 3, 1e-9);
   EXPECT_EQ(score.failures, 1);
   EXPECT_NEAR(score.drift_px, 3, 1e-9);
 }
@@ -158,8 +194,29 @@ TEST(RegistrationScore, TheFirstFrameOfTheMeasurementIsFree) {
   const std::vector<Eigen::Matrix3d> truth = {Shift(0, 0), Shift(10, 0)};
   const std::vector<Eigen::Matrix3d> measured = {Shift(5, 5), Shift(15, 5)};
   const RegistrationScore score = ScoreRegistration(measured, truth, 640, 480);
-  EXPECT_NEAR(score.max_px, 0, 1e-9);
+  EXPECT_NEAR(score.max_px.value(), 0, 1e-9);
   EXPECT_NEAR(score.drift_px, 0, 1e-9);
+}
+
+TEST(RegistrationScore, PairsWithoutCommonGroundAreCountedAndLeftOut) {
+  // Truth jumps by more than the picture once; the other pair is 3 px wrong, and so is the mean.
+  const std::vector<Eigen::Matrix3d> truth = {Shift(0, 0), Shift(700, 0), Shift(710, 0)};
+  const std::vector<Eigen::Matrix3d> measured = {Shift(0, 0), Shift(10, 0), Shift(23, 0)};
+  const RegistrationScore score = ScoreRegistration(measured, truth, 640, 480);
+  ASSERT_EQ(score.rms_px.size(), 2U);
+  EXPECT_EQ(score.rms_px[0], std::nullopt);
+  EXPECT_EQ(score.pairs, 1);
+  EXPECT_EQ(score.without_ground, 1);
+  EXPECT_NEAR(score.mean_px.value(), 3, 1e-9);
+  EXPECT_NEAR(score.max_px.value(), 3, 1e-9);
+  EXPECT_EQ(score.failures, 1);
+
+  const RegistrationScore none =
+      ScoreRegistration({Shift(0, 0), Shift(1, 0)}, {Shift(0, 0), Shift(0, 500)}, 640, 480);
+  EXPECT_EQ(none.pairs, 0);
+  EXPECT_EQ(none.without_ground, 1);
+  EXPECT_FALSE(none.mean_px);
+  EXPECT_FALSE(none.max_px);
 }
 
 TEST(RegistrationScore, EmptyAndUnequal) {

@@ -12,17 +12,6 @@
 namespace windhover {
 namespace {
 
-const char* TypeName(DeviceKind kind) {
-  switch (kind) {
-    case DeviceKind::kOpenClGpu:
-      return "GPU";
-    case DeviceKind::kOpenClCpu:
-      return "CPU";
-    default:
-      return "";
-  }
-}
-
 std::string SelectorFromEnvironment() {
   const char* value = std::getenv("WINDHOVER_DEVICE");
   return value == nullptr ? "" : value;
@@ -32,7 +21,7 @@ std::string SelectorFromEnvironment() {
                                const std::vector<DeviceInfo>& open_cl_devices) {
   std::string text = "no device fits '" + selector + "'; there are:\n";
   for (const DeviceInfo& device : open_cl_devices) {
-    text += "  " + device.Selector() + "\n";
+    text += "  " + device.selector + "\n";
   }
   throw DeviceError(text + "  cpu");
 }
@@ -41,13 +30,7 @@ std::string SelectorFromEnvironment() {
 
 std::string DeviceInfo::Describe() const {
   if (kind == DeviceKind::kCpuTwin) return "CPU twin";
-  const std::string type = TypeName(kind);
-  return "OpenCL " + (type.empty() ? "" : type + " ") + "'" + name + "' (" + platform + ")";
-}
-
-std::string DeviceInfo::Selector() const {
-  if (kind == DeviceKind::kCpuTwin) return "cpu";
-  return platform + ":" + TypeName(kind) + ":" + name;
+  return "OpenCL " + opencl::TypeName(kind) + " '" + name + "' (" + platform + ")";
 }
 
 std::shared_ptr<Backend> Backend::Create(const std::string& device, const Warn& warn) {

@@ -34,17 +34,19 @@ struct DeviceInfo {
   std::string name;      // device name
   std::string version;   // driver and OpenCL C version, for people
   int compute_units = 0;
+  // The text that selects exactly this device: "<platform>:<CPU|GPU>:<name>", or with its index in
+  // place of a name that others share, or "cpu".
+  std::string selector;
 
   // "OpenCL CPU 'name' (platform)" or "CPU twin", for logs and the summary line.
   std::string Describe() const;
-  // The text that selects exactly this device: "<platform>:<CPU|GPU>:<name>", or "cpu".
-  std::string Selector() const;
 };
 
 // Makes images and the operators that work on them, all on one device, chosen once. Thread-safe;
-// what it makes is not: an operator or image is used by one thread at a time. Operators run to
-// their end before they return, so that results may be handed to another thread or operator at
-// once. Operators refuse (std::invalid_argument) images of the wrong size.
+// what it makes is not: an operator is used by one thread at a time, and so is an image while it is
+// written; once written, several threads may read it. Operators run to their end before they
+// return, so that results may be handed to another thread or operator at once. Operators refuse
+// (std::invalid_argument) images of the wrong size.
 class Backend {
  public:
   // Receives one line of text for people, e.g. why there is no OpenCL.
@@ -89,9 +91,8 @@ class Backend {
   virtual std::unique_ptr<TemporalMedian> MakeTemporalMedian() = 0;
   virtual std::unique_ptr<Warp> MakeWarp() = 0;
 
-  // Compiles every kernel that the operators can need for frames of up to the usual sizes and fills
-  // the program cache; nothing to do on the CPU twin. Calls `progress` with the kernel's name
-  // before each one.
+  // Compiles every kernel that the operators can need and fills the program cache; nothing to do on
+  // the CPU twin. Calls `progress` with the kernel's name before each one.
   virtual void WarmUp(const std::function<void(const std::string&)>& progress) = 0;
 };
 

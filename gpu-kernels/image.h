@@ -9,7 +9,7 @@
 namespace windhover {
 
 // How the host is about to use mapped memory. kWrite loses what was there before.
-enum class Access { kRead, kWrite, kReadWrite };
+enum class Access { kRead, kWrite };
 
 // A block of bytes owned by a backend. Operators of the same backend use it where it lies; the host
 // sees it only while it is mapped. On CPU backends and on PoCL mapping costs no copy.
@@ -81,7 +81,6 @@ class Image {
 
   MappedImage<const T> Read() const { return {*memory_, Access::kRead, width_, height_, stride_}; }
   MappedImage<T> Write() { return {*memory_, Access::kWrite, width_, height_, stride_}; }
-  MappedImage<T> ReadWrite() { return {*memory_, Access::kReadWrite, width_, height_, stride_}; }
 
   // For the operators of the backend that made the image.
   Memory& memory() const { return *memory_; }

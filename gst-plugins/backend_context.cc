@@ -108,7 +108,7 @@ bool SharedBackend::Suits(const std::string& device) {
   if (device.empty()) return true;
   const gchar* made_from = gst_structure_get_string(gst_context_get_structure(context_), "device");
   return device == (made_from != nullptr ? made_from : "") ||
-         device == BackendOfContext(context_)->device().Selector();
+         device == BackendOfContext(context_)->device().selector;
 }
 
 bool SharedBackend::AskNeighbours(const std::string& device) {

@@ -71,6 +71,7 @@ DeviceInfo CpuTwinInfo() {
   DeviceInfo info;
   info.kind = DeviceKind::kCpuTwin;
   info.name = "CPU twin";
+  info.selector = "cpu";
   info.compute_units = static_cast<int>(std::thread::hardware_concurrency());
   return info;
 }

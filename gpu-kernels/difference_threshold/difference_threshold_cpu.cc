@@ -63,8 +63,7 @@ void FlagRowWithoutGradient(const std::uint8_t* frame, const std::uint8_t* backg
   for (int x = 0; x < width; ++x) {
     const std::uint8_t f = frame[x];
     const std::uint8_t b = background[x];
-    const auto difference = static_cast<std::uint8_t>(f > b ? f - b : b - f);
-    flags[x] = static_cast<std::uint8_t>((f != 0) & (b != 0) & (difference > limit));
+    flags[x] = static_cast<std::uint8_t>((f != 0) & (b != 0) & (Difference(f, b) > limit));
   }
 }
 

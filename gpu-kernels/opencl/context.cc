@@ -43,9 +43,7 @@ Buffer::Buffer(const Context& context, std::size_t size_bytes)
 }
 
 std::byte* Buffer::Map(Access access) {
-  const cl_map_flags flags = access == Access::kRead    ? CL_MAP_READ
-                             : access == Access::kWrite ? CL_MAP_WRITE_INVALIDATE_REGION
-                                                        : CL_MAP_READ | CL_MAP_WRITE;
+  const cl_map_flags flags = access == Access::kRead ? CL_MAP_READ : CL_MAP_WRITE_INVALIDATE_REGION;
   cl_int code = CL_SUCCESS;
   void* pointer = clEnqueueMapBuffer(queue_.get(), memory_.get(), CL_TRUE, flags, 0, size_bytes_, 0,
                                      nullptr, nullptr, &code);
@@ -91,7 +89,7 @@ Context::Context(const Device& device, ProgramCache cache)
   cl_uint lanes = 1;
   WINDHOVER_CL(name_, clGetDeviceInfo(device.id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof(lanes),
                                       &lanes, nullptr));
-  if (is_cpu()) native_float_lanes_ = static_cast<int>(std::clamp<cl_uint>(lanes, 1, 16));
+  if (is_cpu()) float_lanes_ = lanes >= 16 ? 16 : lanes >= 8 ? 8 : 4;
 }
 
 std::unique_ptr<Buffer> Context::Allocate(std::size_t size_bytes) const {

@@ -79,8 +79,8 @@ class Context : public std::enable_shared_from_this<Context> {
   // The name that error texts use.
   const std::string& name() const { return name_; }
   bool is_cpu() const { return device_.info.kind == DeviceKind::kOpenClCpu; }
-  // Lanes of the device's float vectors, 1 to 16; 1 on GPUs.
-  int native_float_lanes() const { return native_float_lanes_; }
+  // Elements of the float vectors that kernels should use: 4, 8 or 16 on CPUs, 1 elsewhere.
+  int float_lanes() const { return float_lanes_; }
 
   // The program of an embedded source (kernel_sources.h), or of several joined, under compiler
   // options such as "-DV=16"; "-cl-std=CL1.2" is always added. Compiled once in a process, and read
@@ -109,7 +109,7 @@ class Context : public std::enable_shared_from_this<Context> {
   Device device_;
   std::string name_;
   ProgramCache cache_;
-  int native_float_lanes_ = 1;
+  int float_lanes_ = 1;
   Handle<cl_context> context_;
   Handle<cl_command_queue> map_queue_;
 

@@ -69,6 +69,17 @@ bool IsIndex(const std::string& text) {
 
 }  // namespace
 
+std::string TypeName(DeviceKind kind) {
+  switch (kind) {
+    case DeviceKind::kOpenClGpu:
+      return "GPU";
+    case DeviceKind::kOpenClCpu:
+      return "CPU";
+    default:
+      return "ACCELERATOR";
+  }
+}
+
 std::string DeviceText(cl_device_id device, cl_device_info what) {
   std::size_t size = 0;
   if (clGetDeviceInfo(device, what, 0, nullptr, &size) != CL_SUCCESS || size == 0) return "";
@@ -98,7 +109,20 @@ std::vector<Device> ListDevices() {
   std::stable_sort(devices.begin(), devices.end(), [](const Device& a, const Device& b) {
     return Preference(a.info.kind) < Preference(b.info.kind);
   });
+  std::vector<DeviceInfo> infos;
+  for (const Device& device : devices) infos.push_back(device.info);
+  for (std::size_t i = 0; i < devices.size(); ++i) devices[i].info.selector = SelectorOf(infos, i);
   return devices;
+}
+
+std::string SelectorOf(const std::vector<DeviceInfo>& devices, std::size_t index) {
+  const DeviceInfo& device = devices[index];
+  const std::string kind = device.platform + ":" + TypeName(device.kind) + ":";
+  std::string selector = kind + device.name;
+  for (std::size_t i = 0; i < devices.size() && SelectDevice(devices, selector) != index; ++i) {
+    selector = kind + std::to_string(i);
+  }
+  return selector;
 }
 
 std::optional<std::size_t> SelectDevice(const std::vector<DeviceInfo>& devices,

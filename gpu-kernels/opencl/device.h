@@ -26,6 +26,13 @@ std::vector<Device> ListDevices();
 std::optional<std::size_t> SelectDevice(const std::vector<DeviceInfo>& devices,
                                         const std::string& selector);
 
+// "GPU", "CPU" or "ACCELERATOR".
+std::string TypeName(DeviceKind kind);
+
+// The text by which SelectDevice finds devices[index]: with its name, or with its index where the
+// name leads to another device.
+std::string SelectorOf(const std::vector<DeviceInfo>& devices, std::size_t index);
+
 // What clGetDeviceInfo says, where that is a text.
 std::string DeviceText(cl_device_id device, cl_device_info what);
 

@@ -23,22 +23,18 @@ inline std::size_t RoundUp(std::size_t count, std::size_t unit) {
   return (count + unit - 1) / unit * unit;
 }
 
-// A kernel argument for a buffer that the kernel reads or writes: an image, a buffer, or nothing (a
-// null pointer in the kernel).
+// A kernel argument for a buffer that the kernel reads or writes: an image or a buffer.
 class GlobalMemory {
  public:
   GlobalMemory(const Buffer& buffer) : memory_(&buffer) {}
   GlobalMemory(const Memory& memory) : memory_(&memory) {}
   template <typename T>
   GlobalMemory(const Image<T>& image) : memory_(&image.memory()) {}
-  GlobalMemory(std::nullptr_t) {}
 
-  cl_mem In(cl_context context) const {
-    return memory_ == nullptr ? nullptr : BufferOf(*memory_, context).get();
-  }
+  cl_mem In(cl_context context) const { return BufferOf(*memory_, context).get(); }
 
  private:
-  const Memory* memory_ = nullptr;
+  const Memory* memory_;
 };
 
 // A kernel argument in __local memory of that many bytes.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gpu-kernels/decimate/decimate_check.h"
 #include "gpu-kernels/decimate/decimate_opencl.h"
 #include "gpu-kernels/difference_threshold/difference_threshold_opencl.h"
 #include "gpu-kernels/opencl/context.h"
@@ -19,10 +20,8 @@
 namespace windhover::opencl {
 namespace {
 
-// What pictures from 320 x 240 to 4K, cut into 4 to 100 tiles, and windows of up to 255 frames ask
-// for.
-constexpr int kDecimations[] = {2, 3, 4, 5, 7, 10, 16};
-constexpr int kTransformSides[] = {32, 64, 128, 256, 512};
+// The whole ranges of what the operators take; of the windows, one for each kind of median kernel.
+constexpr int kTransformSides[] = {16, 32, 64, 128, 256, 512};
 constexpr std::size_t kMedianWindows[] = {21, 81, 255};
 
 class OpenClBackend : public Backend {
@@ -75,7 +74,7 @@ void OpenClBackend::WarmUp(const std::function<void(const std::string&)>& progre
 
   announce("decimation");
   const auto decimate = MakeDecimate();
-  for (const int factor : kDecimations) {
+  for (int factor = 1; factor <= kMaxDecimation; ++factor) {
     GrayImage small = MakeImage<std::uint8_t>(kSide / factor, kSide / factor);
     decimate->Run(source, factor, small);
   }

@@ -5,12 +5,7 @@ namespace windhover::opencl {
 
 RowLayout RowLayout::For(const Context& context) {
   if (!context.is_cpu()) return {};
-  const int native = context.native_float_lanes();
-  return {.byte_lanes = 64,
-          .float_lanes = native >= 16  ? 16
-                         : native >= 8 ? 8
-                                       : 4,
-          .whole_rows = true};
+  return {.byte_lanes = 64, .float_lanes = context.float_lanes(), .whole_rows = true};
 }
 
 WorkSize RowLayout::Size(std::size_t groups, std::size_t height) const {

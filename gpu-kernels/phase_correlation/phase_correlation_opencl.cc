@@ -292,10 +292,7 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
 
 PhaseCorrelationLayout PhaseCorrelationLayout::For(const Context& context) {
   if (!context.is_cpu()) return {};
-  const int native = context.native_float_lanes();
-  return {.lanes = native >= 16  ? 16
-                   : native >= 8 ? 8
-                                 : 4,
+  return {.lanes = context.float_lanes(),
           .sample_rows = 8,
           .sample_batch = 64,
           .work_group = 1,

@@ -27,8 +27,8 @@ void Check(const PhaseCorrelationSettings& settings) {
   if (settings.tiles.empty() || settings.tiles.size() > kMaxTiles) {
     throw std::invalid_argument("phase correlation: must have 1 to 1024 tiles");
   }
-  if (!(settings.blackman_alpha >= 0.0F && settings.blackman_alpha <= 0.5F)) {
-    throw std::invalid_argument("phase correlation: Blackman alpha must be 0 to 0.5");
+  if (!(settings.blackman_alpha >= 0.0F && settings.blackman_alpha <= 0.25F)) {
+    throw std::invalid_argument("phase correlation: Blackman alpha must be 0 to 0.25");
   }
   if (!(settings.peak_sigma_px >= 0.0F && settings.peak_sigma_px <= 4.0F)) {
     throw std::invalid_argument("phase correlation: peak sigma must be 0 to 4 px");

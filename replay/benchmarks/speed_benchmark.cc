@@ -234,7 +234,7 @@ SpeedBenchmarkResult RunSpeedBenchmark(const SpeedBenchmarkSettings& settings,
   const DeviceInfo opencl = OpenClDevice();
   const bool has_opencl = opencl.kind != DeviceKind::kCpuTwin;
   const std::vector<std::unique_ptr<Contestant>> contestants =
-      MakeContestants(settings, has_opencl ? opencl.Selector() : "");
+      MakeContestants(settings, has_opencl ? opencl.selector : "");
   for (int round = 1; round <= settings.rounds; ++round) {
     for (const std::unique_ptr<Contestant>& contestant : contestants) {
       say("round " + std::to_string(round) + ": " + contestant->Result().name);

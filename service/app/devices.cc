@@ -44,9 +44,9 @@ int ListDevices(const std::string& device) {
   const DeviceInfo used = MakeBackend(device)->device();
   bool marked = false;
   for (const DeviceInfo& info : Backend::Devices()) {
-    const bool is_used = !marked && info.Selector() == used.Selector();
+    const bool is_used = !marked && info.selector == used.selector;
     marked = marked || is_used;
-    fmt::print("{} {}\n    --device '{}'", is_used ? "*" : " ", info.Describe(), info.Selector());
+    fmt::print("{} {}\n    --device '{}'", is_used ? "*" : " ", info.Describe(), info.selector);
     if (!info.version.empty()) fmt::print(", {}", info.version);
     if (info.compute_units > 0) fmt::print(", {} compute units", info.compute_units);
     fmt::print("\n");

@@ -47,7 +47,7 @@ struct RegistrationOptions {
                "What the frames of a window are registered to"),
         Number("tile-columns", &O::tile_columns, 2, 25, "", "Tiles across the picture"),
         Number("tile-rows", &O::tile_rows, 2, 25, "", "Tiles down the picture"),
-        Number("blackman-alpha", &O::blackman_alpha, 0.0, 0.5, "",
+        Number("blackman-alpha", &O::blackman_alpha, 0.0, 0.25, "",
                "Alpha of the Blackman window that fades each tile out towards its border"),
         Number("peak-sigma", &O::peak_sigma_px, 0.0, 4.0, "px",
                "Standard deviation that the correlation peak is smoothed to; 0 smooths nothing"),
@@ -56,7 +56,8 @@ struct RegistrationOptions {
         Number("ransac-threshold", &O::ransac_threshold_px, 0.1, 20.0, "px",
                "Largest distance from the homography at which a tile's match is an inlier"),
         Number("min-inlier-share", &O::min_inlier_share, 0.1, 1.0, "",
-               "Share of the tiles that must agree for a homography to be valid"),
+               "Share of the tiles with a correlation peak that must agree for a homography to be "
+               "valid"),
         Number("max-residual", &O::max_residual_px, 0.05, 20.0, "px",
                "RMS distance of the inliers from the homography above which it is degraded"),
         Number("min-overlap", &O::min_overlap, 0.3, 0.99, "",

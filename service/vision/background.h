@@ -16,7 +16,8 @@ namespace windhover {
 // frame once the window is full, as long as evidence is let go in time. One thread at a time.
 class BackgroundSubtraction {
  public:
-  // `registration` is used in centre mode only. Throws OptionError as StreamRegistration does.
+  // `registration` is used in centre mode only, from the first Pop on. Throws OptionError where an
+  // option is out of its range.
   BackgroundSubtraction(std::shared_ptr<Backend> backend, int width, int height,
                         const BackgroundOptions& options, const RegistrationOptions& registration);
   ~BackgroundSubtraction();
@@ -27,7 +28,7 @@ class BackgroundSubtraction {
   void Drain();
   // Evidence for the oldest frame that has not come out yet, once its window is complete; null
   // until then. Each pushed frame comes out exactly once, in order. Call until null after Push and
-  // Drain.
+  // Drain. In centre mode throws OptionError as StreamRegistration's constructor does.
   std::shared_ptr<const MotionEvidence> Pop();
   // Forgets everything that is held.
   void Reset();

@@ -60,11 +60,16 @@ bool Sample(const GrayView& image, const Eigen::Vector2f& at, int side, int cell
       to[i] = w00 * static_cast<float>(upper[i]) + w01 * static_cast<float>(upper[i + 1]) +
               w10 * static_cast<float>(lower[i]) + w11 * static_cast<float>(lower[i + 1]);
     }
+    if (fx > 0) smallest = std::min<int>(smallest, upper[across]);
     if (cell_px == 1) continue;
     float* cells = out + j / cell_px * side;
     for (int i = 0; i < side; ++i) {
       for (int k = 0; k < cell_px; ++k) cells[i] += line[i * cell_px + k];
     }
+  }
+  if (fy > 0) {
+    const std::uint8_t* last = image.row(y + across) + x;
+    smallest = std::min<int>(smallest, *std::min_element(last, last + across + (fx > 0 ? 1 : 0)));
   }
   return smallest > 0;
 }

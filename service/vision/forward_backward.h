@@ -4,9 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "service/vision/motion_window.h"
 

@@ -156,9 +156,10 @@ const std::vector<Detection>& MotionDetection::Detect(const MotionEvidence& evid
   State& s = *state_;
   s.candidates.clear();
   if (evidence.centre < evidence.samples.size()) {
+    // Mapped no longer than this, even where a device fails.
+    const std::unique_ptr<State, void (*)(State*)> unmap(&s, [](State* at) { at->UnmapWindow(); });
     s.MapWindow(evidence);
     s.FindCandidates(evidence);
-    s.UnmapWindow();
   }
   return s.tracking.Update(evidence.registration, s.candidates);
 }
@@ -289,7 +290,7 @@ bool MotionDetection::State::Examine(const SeedComponent& component, MotionCandi
   }
   if (kept_points < kLeastKept * judged) return false;
   const auto count = static_cast<float>(points.size());
-  candidate.has_velocity = votes || follows;
+  candidate.has_velocity = votes || kept_points > 0;
   const Eigen::Vector2f velocity =
       kept_points > 0 ? followed / static_cast<float>(kept_points) : voted / count;
   if (candidate.has_velocity && velocity.norm() < options.min_speed_px) return false;

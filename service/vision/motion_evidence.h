@@ -12,8 +12,8 @@
 namespace windhover {
 
 // What a window of registered frames says about its centre frame: the link between background
-// subtraction and motion detection. The grid is the anchor's picture in anchor mode and the centre
-// frame's own in centre mode.
+// subtraction and motion detection. The grid is the picture of a frame of the window, the centre
+// frame in centre mode, with a margin on each side.
 struct MotionEvidence {
   // The registered frame R_j and its motion seeds H_j (thesis 6.3), both on the grid.
   struct Sample {

@@ -75,9 +75,11 @@ float ShorterSide(const MotionFragment& fragment) {
 }
 
 // Whether one follows the other: their centres lie along the motion, give or take half a width.
+// What does not move follows nothing.
 bool FollowEachOther(const MotionFragment& a, const MotionFragment& b) {
   const Eigen::Vector2f between = Centre(b) - Centre(a);
   const Eigen::Vector2f direction = (a.velocity_px + b.velocity_px).normalized();
+  if (direction.isZero()) return false;
   const float along = std::abs(between.dot(direction));
   const float across = std::abs(between.x() * direction.y() - between.y() * direction.x());
   const float half_width = 0.5F * std::max(ShorterSide(a), ShorterSide(b));

@@ -15,8 +15,8 @@ namespace windhover {
 // predecessor. No allocation after the first frames. One thread at a time.
 class StreamRegistration {
  public:
-  // Throws OptionError where the frame is smaller than the tile layout needs (the text says how
-  // small it may be).
+  // Throws OptionError where there are too few tiles, or where the frame is smaller than they need
+  // (the text says how small it may be).
   StreamRegistration(std::shared_ptr<Backend> backend, int width, int height,
                      const RegistrationOptions& options);
   ~StreamRegistration();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "service/vision/tile_layout.h"
@@ -16,6 +17,11 @@ constexpr int kMinInliers = 5;
 constexpr double kMinInlierShareOfTiles = 0.2;
 
 PhaseCorrelationSettings MakeSettings(int width, int height, const RegistrationOptions& options) {
+  if (options.tile_columns * options.tile_rows < kMinInliers) {
+    throw OptionError("option tile-columns = " + std::to_string(options.tile_columns) +
+                      " and tile-rows = " + std::to_string(options.tile_rows) +
+                      ": a registration takes " + std::to_string(kMinInliers) + " tiles at least");
+  }
   TileLayout layout = UniformTileLayout(width, height, options.tile_columns, options.tile_rows);
   PhaseCorrelationSettings settings;
   settings.tile_width = layout.tile_width;

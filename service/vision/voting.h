@@ -31,13 +31,14 @@ struct SeedVote {
 // times as wide, and the window of frame j that can vote at all is max_speed |d_j| in each
 // direction: the footprint is inversely proportional to the size of the window, as the thesis has
 // it. Each frame votes for a place of V once, however many of its seeds do. The seed is kept where
-// the maximum of V reaches `share` of the frames in which that trajectory's ground is seen.
+// the maximum of V reaches `share` of the frames in which that trajectory's ground is seen, taken
+// to be 40 % of the window's frames at least.
 //
 // A thing that rests can win no more than half of the frames, because in more than half of them it
 // would be the background: that is what removes the ghosts of things that came or left.
 //
 // Seeds vote and are judged in blocks of 4x4 px through one representative each; where there are
-// more than 4096 such blocks, in larger ones, so that the work stays bounded.
+// more than 2048 such blocks, in larger ones, so that the work stays bounded.
 class VotingFilter {
  public:
   // `max_speed_px` > 0 in px a frame; `share` 0 to 1.

@@ -118,6 +118,6 @@ int main(int argc, char** argv) {
   const auto twin = windhover::Backend::Create("cpu");
   windhover::TimeAll(*twin, rounds);
   const auto device = windhover::Backend::Create();
-  if (device->device().Selector() != "cpu") windhover::TimeAll(*device, rounds);
+  if (device->device().selector != "cpu") windhover::TimeAll(*device, rounds);
   return 0;
 }

@@ -67,16 +67,23 @@ INSTANTIATE_TEST_SUITE_P(
                     SelectorCase{"nonsense", std::nullopt},
                     SelectorCase{"::99999999999999999999", std::nullopt}));
 
-TEST(DeviceInfoTest, SelectorSelectsTheDevice) {
-  for (std::size_t i = 0; i < kDevices.size(); ++i) {
-    EXPECT_EQ(opencl::SelectDevice(kDevices, kDevices[i].Selector()), i);
+TEST(SelectorOfTest, SelectsTheDeviceAndNoOther) {
+  std::vector<DeviceInfo> devices = kDevices;
+  for (const char* name : {"H200", "RTX 3080 Ti", "RTX 3080", "7"}) {
+    devices.push_back(MakeInfo(DeviceKind::kOpenClGpu, "NVIDIA CUDA", name));
   }
-  EXPECT_EQ(Backend::Create("cpu")->device().Selector(), "cpu");
+  devices.push_back(MakeInfo(DeviceKind::kOpenClGpu, "NVIDIA", "RTX 3080"));
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    EXPECT_EQ(opencl::SelectDevice(devices, opencl::SelectorOf(devices, i)), i) << i;
+  }
+  EXPECT_EQ(opencl::SelectorOf(devices, 0), "NVIDIA CUDA:GPU:H200");
+  EXPECT_EQ(opencl::SelectorOf(devices, 6), "NVIDIA CUDA:GPU:2");
+  EXPECT_EQ(Backend::Create("cpu")->device().selector, "cpu");
 }
 
 TEST(DeviceInfoTest, DescribesItself) {
   EXPECT_EQ(kDevices[0].Describe(), "OpenCL GPU 'H200' (NVIDIA CUDA)");
-  EXPECT_EQ(kDevices[5].Describe(), "OpenCL 'ttasim' (Portable Computing Language)");
+  EXPECT_EQ(kDevices[5].Describe(), "OpenCL ACCELERATOR 'ttasim' (Portable Computing Language)");
   EXPECT_EQ(Backend::Create("cpu")->device().Describe(), "CPU twin");
 }
 
@@ -103,19 +110,19 @@ TEST_F(BackendTest, ListsOpenClDevicesAndThenTheCpuTwin) {
     EXPECT_NE(devices[i].kind, DeviceKind::kCpuTwin);
     EXPECT_FALSE(devices[i].name.empty());
     EXPECT_GT(devices[i].compute_units, 0);
-    EXPECT_EQ(Backend::Create(devices[i].Selector())->device().name, devices[i].name);
+    EXPECT_EQ(Backend::Create(devices[i].selector)->device().name, devices[i].name);
   }
 }
 
 TEST_F(BackendTest, TakesTheFirstOpenClDeviceByDefault) {
-  EXPECT_EQ(Backend::Create()->device().Selector(), Backend::Devices().front().Selector());
+  EXPECT_EQ(Backend::Create()->device().selector, Backend::Devices().front().selector);
 }
 
 TEST_F(BackendTest, TakesTheEnvironmentsDeviceWhereNoneIsGiven) {
   setenv("WINDHOVER_DEVICE", "cpu", 1);
   EXPECT_EQ(Backend::Create()->device().kind, DeviceKind::kCpuTwin);
-  const std::string open_cl = Backend::Devices().front().Selector();
-  EXPECT_EQ(Backend::Create(open_cl)->device().Selector(), open_cl);
+  const std::string open_cl = Backend::Devices().front().selector;
+  EXPECT_EQ(Backend::Create(open_cl)->device().selector, open_cl);
   setenv("WINDHOVER_DEVICE", "no such:GPU:device", 1);
   EXPECT_THROW(Backend::Create(), DeviceError);
   EXPECT_EQ(Backend::Create("cpu")->device().kind, DeviceKind::kCpuTwin);
@@ -126,8 +133,7 @@ TEST_F(BackendTest, TakesTheEnvironmentsDeviceWhereNoneIsGiven) {
 TEST_F(BackendTest, UnknownDeviceIsRefusedWithTheListOfDevices) {
   const std::string text = ErrorOf("no such:GPU:device");
   EXPECT_THAT(text, HasSubstr("'no such:GPU:device'"));
-  for (const DeviceInfo& device : Backend::Devices())
-    EXPECT_THAT(text, HasSubstr(device.Selector()));
+  for (const DeviceInfo& device : Backend::Devices()) EXPECT_THAT(text, HasSubstr(device.selector));
 }
 
 // In a process of its own, as the list of platforms is read once in each.

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,9 +15,14 @@
 #include <string>
 #include <vector>
 
+#include "gpu-kernels/decimate/decimate.h"
 #include "gpu-kernels/opencl/context.h"
 #include "gpu-kernels/opencl/kernel.h"
+#include "gpu-kernels/opencl/opencl_backend.h"
 #include "gpu-kernels/opencl/program_cache.h"
+#include "gpu-kernels/phase_correlation/phase_correlation.h"
+#include "gpu-kernels/temporal_median/temporal_median.h"
+#include "gpu-kernels/warp/warp.h"
 
 namespace windhover::opencl {
 namespace {
@@ -175,6 +182,53 @@ TEST_F(OpenClTest, StoredAfterRunningItStillRuns) {
   const Program cached = next->Compile(kAddCl);
   EXPECT_TRUE(cached.from_cache);
   EXPECT_EQ(Compute(*next, cached), 84);
+}
+
+// The work that a driver has put off to the first launch is in the binary, too.
+TEST_F(OpenClTest, WhatIsStoredAfterRunningHoldsMore) {
+  // Options of its own, as PoCL itself remembers what it has compiled in earlier runs.
+  const std::string options = "-DRUN=" + folder_.path().filename().string();
+  EXPECT_EQ(Compute(*context_, context_->Compile(kAddCl, options)), 84);
+  ASSERT_EQ(folder_.Files().size(), 1u);
+  const auto before = std::filesystem::file_size(folder_.Files().front());
+  context_->StorePrograms();
+  ASSERT_EQ(folder_.Files().size(), 1u);
+  EXPECT_GT(std::filesystem::file_size(folder_.Files().front()), before);
+}
+
+TEST_F(OpenClTest, WarmUpLeavesNothingToCompile) {
+  const ProgramCache cache(folder_.path() / "cache");
+  MakeOpenClBackend(device_, cache)->WarmUp({});
+  const std::size_t warm = folder_.Files().size();
+  EXPECT_GE(warm, 5u);
+  const auto backend = MakeOpenClBackend(device_, cache);
+  const GrayImage source = [&] {
+    GrayImage image = backend->MakeImage<std::uint8_t>(160, 120);
+    const auto mapped = image.Write();
+    std::fill_n(mapped.data(), mapped.stride() * mapped.height(), std::uint8_t{9});
+    return image;
+  }();
+  GrayImage result = backend->MakeImage<std::uint8_t>(160, 120);
+  for (int factor = 1; factor <= 16; ++factor) {
+    GrayImage small = backend->MakeImage<std::uint8_t>(160 / factor, 120 / factor);
+    backend->MakeDecimate()->Run(source, factor, small);
+  }
+  backend->MakeWarp()->Run(source, kIdentity3, result);
+  for (const int frames : {1, 13, 32, 33, 96, 97, 255}) {
+    backend->MakeTemporalMedian()->Run(std::vector<const GrayImage*>(frames, &source), 1, result);
+  }
+  for (const int side : {16, 32, 64, 128, 256, 512}) {
+    PhaseCorrelationSettings settings;
+    settings.tile_width = side;
+    settings.tile_height = side;
+    settings.tiles = {{}};
+    const auto correlation = backend->MakePhaseCorrelation(settings);
+    const auto spectra = correlation->MakeSpectra();
+    correlation->Transform(source, kIdentity3, *spectra);
+    TilePeak peak;
+    correlation->Correlate(*spectra, *spectra, {&peak, 1});
+  }
+  EXPECT_EQ(folder_.Files().size(), warm);
 }
 
 TEST_F(OpenClTest, DamagedCacheFilesAreReplaced) {

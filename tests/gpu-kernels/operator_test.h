@@ -119,7 +119,7 @@ inline std::shared_ptr<Backend> BackendNamed(const std::string& name) {
   if (name == "CpuTwin") {
     backend = Backend::Create("cpu");
   } else if (name == "OpenCl") {
-    backend = Backend::Create(OpenClDevice().info.Selector());
+    backend = Backend::Create(OpenClDevice().info.selector);
   } else if (name == "OpenClStandard") {
     backend = std::make_shared<LayoutBackend>(
         opencl::RowLayout{.byte_lanes = 16, .float_lanes = 4, .whole_rows = true});

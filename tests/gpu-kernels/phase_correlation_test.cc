@@ -306,7 +306,7 @@ TEST_P(PhaseCorrelationTest, RefusesWhatTheContractRefuses) {
   EXPECT_THROW(make([](S& s) { s.tile_width = 1024; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.tiles.clear(); }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.tiles.resize(1025); }), std::invalid_argument);
-  EXPECT_THROW(make([](S& s) { s.blackman_alpha = 0.6F; }), std::invalid_argument);
+  EXPECT_THROW(make([](S& s) { s.blackman_alpha = 0.26F; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.peak_sigma_px = -1.0F; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.noise_sigma = 0.0F; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.noise_sigma = std::nanf(""); }), std::invalid_argument);

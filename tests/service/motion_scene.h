@@ -12,33 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "gpu-kernels/image.h"
+#include "gpu-kernels/backend.h"
 #include "service/vision/motion_evidence.h"
 #include "service/vision/motion_window.h"
 
 namespace windhover {
-
-// Plain memory of the host, so that the motion filters are tested without a backend.
-class HostMemory : public Memory {
- public:
-  explicit HostMemory(std::size_t size_bytes) : bytes_(size_bytes + 64) {}
-  std::byte* Map(Access) override {
-    void* start = bytes_.data();
-    std::size_t space = bytes_.size();
-    return static_cast<std::byte*>(std::align(64, 1, start, space));
-  }
-  void Unmap(std::byte*) noexcept override {}
-
- private:
-  std::vector<std::byte> bytes_;
-};
-
-template <typename T>
-Image<T> MakeHostImage(int width, int height) {
-  const std::ptrdiff_t per_row = 64 / sizeof(T);
-  const std::ptrdiff_t stride = (width + per_row - 1) / per_row * per_row;
-  return Image<T>(std::make_unique<HostMemory>(stride * height * sizeof(T)), width, height, stride);
-}
 
 // The registered frames of a window over a ground of smooth random texture, on which a test paints
 // what it likes, and the seeds that follow from them.
@@ -135,10 +113,7 @@ class MotionScene {
     evidence.frame_height = height_;
     evidence.background = ToImage(ground_);
     for (int f = 0; f < frames(); ++f) {
-      auto seeds = std::make_shared<BitImage>();
-      seeds->words = MakeHostImage<std::uint32_t>((width_ + 31) / 32, height_);
-      seeds->width = width_;
-      seeds->height = height_;
+      auto seeds = std::make_shared<BitImage>(host_->MakeBitImage(width_, height_));
       const auto words = seeds->words.Write();
       for (int y = 0; y < height_; ++y) {
         std::fill_n(words.row(y), words.width(), 0U);
@@ -158,7 +133,7 @@ class MotionScene {
 
  private:
   std::shared_ptr<const GrayImage> ToImage(const Pixels& pixels) const {
-    auto image = std::make_shared<GrayImage>(MakeHostImage<std::uint8_t>(width_, height_));
+    auto image = std::make_shared<GrayImage>(host_->MakeImage<std::uint8_t>(width_, height_));
     const auto to = image->Write();
     for (int y = 0; y < height_; ++y) {
       std::copy_n(pixels.data() + static_cast<std::ptrdiff_t>(y) * width_, width_, to.row(y));
@@ -166,6 +141,7 @@ class MotionScene {
     return image;
   }
 
+  std::shared_ptr<Backend> host_ = Backend::Create("cpu");
   int width_;
   int height_;
   std::vector<int> offsets_;

@@ -258,7 +258,8 @@ TEST(Option, ShortestTextGivesTheValueBack) {
 }
 
 TEST(Option, LocaleDoesNotMatter) {
-  // A locale whose decimal point is a comma; std::from_chars must not look at it.
+  // Streams with a comma for a decimal point. C's own locale cannot be made here without a system's
+  // locale files; nothing of it is called.
   struct Comma : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
   };

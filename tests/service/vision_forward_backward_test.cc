@@ -109,6 +109,23 @@ TEST(ForwardBackwardFilter, SaysNothingWithoutGroundOrFrames) {
   }
   EXPECT_EQ(Follow(hidden, kMiddle, {0, 0}).directions, 0);
 
+  // One unseen column or row next to the pattern's last is enough where samples lie between pixels.
+  for (const bool column : {true, false}) {
+    for (const int cell_px : {1, 2}) {
+      MotionScene partly(kSize, kSize, MotionScene::Offsets(-5, 5));
+      partly.AddMover(40, 40, 41, 41, 0, 0, 200);
+      const int reach = (11 * cell_px + 1) / 2;  // only interpolation looks there
+      for (int f = 0; f < partly.frames(); ++f) {
+        if (partly.offset(f) == 0) continue;
+        partly.Hide(f, column ? 60 + reach : 0, column ? 0 : 60 + reach, column ? 1 : kSize,
+                    column ? kSize : 1);
+      }
+      const Eigen::Vector2f off(column ? 0.5F : 0.0F, column ? 0.0F : 0.5F);
+      const Eigen::Vector2f seed = kMiddle + (cell_px == 1 ? off : Eigen::Vector2f(0, 0));
+      EXPECT_EQ(Follow(partly, seed, {0, 0}, cell_px).directions, 0) << column << cell_px;
+    }
+  }
+
   MotionScene tiny(1, 1, MotionScene::Offsets(-1, 1));
   EXPECT_TRUE(Follow(tiny, {0, 0}, {0, 0}).kept);
   EXPECT_TRUE(Follow(tiny, {0, 0}, {0, 0}, 4).kept);

@@ -125,21 +125,58 @@ TEST(MotionDetection, EachFilterRemovesFalseAlarms) {
   const int without = Count(raw, {}, clutter).false_alarms;
   EXPECT_GT(without, 200);
 
+  // What moves is still found. Following alone does not know where to look first.
+  const int all = 3 * 16;
+  EXPECT_EQ(Count(raw, kMovers, {}).hits, all);
+
   MotionOptions voting = raw;
   voting.vote_share = 0.6;
   voting.max_speed_px = 2.5;
   voting.min_speed_px = 0;
   EXPECT_LT(Count(voting, {}, clutter).false_alarms, without / 2);
+  EXPECT_EQ(Count(voting, kMovers, {}).hits, all);
 
   MotionOptions following = raw;
   following.forward_backward_margin_px = 0.5;
   following.min_speed_px = 0;
   EXPECT_LT(Count(following, {}, clutter).false_alarms, without * 3 / 4);
+  EXPECT_GE(Count(following, kMovers, {}).hits, all / 2);
 
   MotionOptions tracking = raw;
   tracking.min_travel_px = 3;
   tracking.min_track_frames = 4;
   EXPECT_LT(Count(tracking, {}, clutter).false_alarms, without / 2);
+  EXPECT_GE(Count(tracking, kMovers, {}).hits, all - 3 * tracking.min_track_frames);
+}
+
+TEST(MotionDetection, WithoutFiltersNeighboursStayApart) {
+  MotionOptions raw;
+  raw.vote_share = 0;
+  raw.forward_backward_margin_px = 0;
+  raw.min_travel_px = 0;
+  raw.min_track_frames = 1;
+  const std::vector<Mover> abreast = {{40, 40, 20, 9, 2.0, 0.0}, {40, 59, 20, 9, 2.0, 0.0}};
+  const Tally tally = Count(raw, abreast, {});
+  EXPECT_EQ(tally.hits, 2 * 16);
+  EXPECT_EQ(tally.false_alarms, 0);
+}
+
+// A thing of one grey cannot be followed; without voting nobody knows how it moves.
+TEST(MotionDetection, FollowingAloneIsUndecidedWhereNothingCanBeFollowed) {
+  MotionScene scene(kWidth, kHeight, MotionScene::Offsets(-10, 10));
+  for (int f = 0; f < scene.frames(); ++f) {
+    if (scene.offset(f) != 0) scene.Hide(f, 80, 60, 60, 60);
+  }
+  scene.AddMover(100, 80, 20, 12, 2.0, 0.0, 200, [](int offset) { return offset == 0; });
+  MotionOptions following;
+  following.vote_share = 0;
+  following.min_travel_px = 0;
+  following.min_track_frames = 1;
+  MotionDetection detection(following);
+  const auto& detections = detection.Detect(scene.Evidence());
+  ASSERT_EQ(detections.size(), 1U);
+  EXPECT_GT(Overlap(detections[0].box, {100, 80, 20, 12}), 0.5);
+  EXPECT_NEAR(detections[0].score, 0.5 / 3, 1e-6);  // undecided, and seen in one frame
 }
 
 TEST(MotionDetection, KeepsIdsThroughAnOcclusion) {

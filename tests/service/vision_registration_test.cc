@@ -96,8 +96,23 @@ TEST_P(StreamRegistrationTest, IdentityInIdentityOut) {
   const auto registration = Make();
   registration->Register(Frame(Eigen::Matrix3d::Identity(), 0.0));
   const FrameRegistration r = registration->Register(Frame(Eigen::Matrix3d::Identity(), 0.0));
+  ASSERT_EQ(r.quality, RegistrationQuality::kValid);
   EXPECT_LT(HomographyRms(r.previous_from_frame, Eigen::Matrix3d::Identity(), kWidth, kHeight),
             1e-3);
+}
+
+TEST(TileRegistrationTest, RefusesLayoutsThatCannotRegister) {
+  RegistrationOptions options;
+  options.tile_columns = 2;
+  options.tile_rows = 2;
+  try {
+    StreamRegistration(Backend::Create("cpu"), kWidth, kHeight, options);
+    FAIL();
+  } catch (const OptionError& error) {
+    EXPECT_NE(std::string(error.what()).find("tile-columns = 2"), std::string::npos);
+  }
+  options.tile_columns = 3;
+  EXPECT_NO_THROW(StreamRegistration(Backend::Create("cpu"), kWidth, kHeight, options));
 }
 
 TEST_P(StreamRegistrationTest, NoTextureIsLost) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "replay/format/homographies.h"
 #include "replay/format/labels.h"
 #include "replay/format/sequence.h"
+#include "replay/format/truth.h"
 #include "replay/offline/offline_detection.h"
 #include "replay/offline/overlay.h"
 
@@ -42,22 +44,64 @@ BoxesByFrame ByFrame(const std::vector<LabelledBox>& boxes) {
   return sorted;
 }
 
+// What a result is compared with, read before there is one.
+struct Truth {
+  SequenceTruth sequence;
+  std::vector<LabelledBox> movers;
+  std::vector<Eigen::Matrix3d> first_from_frame;  // empty where the sequence has none
+};
+
+std::optional<Truth> ReadTruth(const DetectSettings& settings) {
+  if (settings.truth.empty()) return std::nullopt;
+  Truth truth = {SequenceTruth(settings.truth, settings.frames), {}, {}};
+  truth.movers = truth.sequence.Movers();
+  if (truth.sequence.HasHomographies()) truth.first_from_frame = truth.sequence.Homographies();
+  return truth;
+}
+
+// A result for other frames than those of the truth is no result: scoring what both have would hide
+// that the source broke off.
+void CheckLength(const DetectSettings& settings, const Truth& truth, int frames) {
+  if (frames == truth.sequence.frames()) return;
+  throw FormatError(settings.source, "gives " + std::to_string(frames) +
+                                         " frames, but the truth is of " +
+                                         std::to_string(truth.sequence.frames()) +
+                                         "; --frames compares only so many from the start");
+}
+
+void CheckSize(const DetectSettings& settings, const Truth& truth, const cv::Mat& frame) {
+  const auto text = [](int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  if (frame.cols == truth.sequence.width() && frame.rows == truth.sequence.height()) return;
+  throw FormatError(settings.source, "is of " + text(frame.cols, frame.rows) +
+                                         " px, but the truth of " +
+                                         text(truth.sequence.width(), truth.sequence.height()));
+}
+
+// How many frames there should be; 0 where nothing says.
+int FramesToCome(const DetectSettings& settings, const FrameSource& source) {
+  if (settings.frames == 0) return source.frames();
+  return source.knows_frames() ? std::min(settings.frames, source.frames()) : settings.frames;
+}
+
 std::vector<FrameOutcome> RunDetection(const DetectSettings& settings,
-                                       const OfflineOptions& options) {
-  const std::unique_ptr<FrameSource> source = OpenFrames(settings.source);
+                                       const OfflineOptions& options, FrameSource& source,
+                                       const std::optional<Truth>& truth) {
   const std::shared_ptr<Backend> backend =
       Backend::Create(options.device.device, [](const std::string& line) {
         std::fprintf(stderr, "windhover-replay: %s\n", line.c_str());
       });
   std::fprintf(stderr, "device: %s\n", backend->device().Describe().c_str());
   std::unique_ptr<OfflineDetection> detection;
-  Progress progress("detecting", settings.frames > 0 ? std::min(settings.frames, source->frames())
-                                                     : source->frames());
+  const int to_come = FramesToCome(settings, source);
+  Progress progress("detecting", to_come);
   const auto start = std::chrono::steady_clock::now();
   int frames = 0;
-  for (cv::Mat frame = source->Next(); !frame.empty(); frame = source->Next()) {
+  for (cv::Mat frame = source.Next(); !frame.empty(); frame = source.Next()) {
     ThrowIfInterrupted();
     if (!detection) {
+      if (truth) CheckSize(settings, *truth, frame);
       detection = std::make_unique<OfflineDetection>(backend, frame.cols, frame.rows, options);
     }
     detection->Push(frame);
@@ -70,6 +114,10 @@ std::vector<FrameOutcome> RunDetection(const DetectSettings& settings,
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::fprintf(stderr, "%d frames in %.1f s\n", frames, seconds);
+  if (frames < to_come) {
+    std::fprintf(stderr, "windhover-replay: %s: %d frames were to come, %d could be read\n",
+                 settings.source.c_str(), to_come, frames);
+  }
   return detection->outcomes();
 }
 
@@ -84,37 +132,25 @@ std::vector<LabelledBox> Boxes(const std::vector<FrameOutcome>& outcomes) {
   return boxes;
 }
 
-// Boxes of frames that were run.
-std::vector<LabelledBox> TruthUpTo(const std::filesystem::path& sequence, std::size_t frames) {
-  std::vector<LabelledBox> truth = ReadBoxes(MoversPath(sequence));
-  std::erase_if(truth,
-                [frames](const LabelledBox& box) { return box.frame > static_cast<int>(frames); });
-  return truth;
-}
-
-void PrintScores(const DetectSettings& settings, const std::vector<FrameOutcome>& outcomes) {
-  const std::vector<LabelledBox> truth = TruthUpTo(settings.truth, outcomes.size());
-  std::printf("%s\n", Describe(ScoreMotion(truth, Boxes(outcomes)), kThesisOverlap).c_str());
-  if (!std::filesystem::exists(HomographiesPath(settings.truth))) return;
-  const SequenceInfo info = ReadSequenceInfo(settings.truth);
-  std::vector<Eigen::Matrix3d> homographies = ReadHomographies(HomographiesPath(settings.truth));
-  homographies.resize(std::min(homographies.size(), outcomes.size()));
-  std::printf("%s\n", Describe(ScoreRegistration(FirstFromFrame(outcomes), homographies, info.width,
-                                                 info.height))
+void PrintScores(const Truth& truth, const std::vector<FrameOutcome>& outcomes) {
+  std::printf("%s\n", Describe(ScoreMotion(truth.movers, Boxes(outcomes)), kThesisOverlap).c_str());
+  if (truth.first_from_frame.empty()) return;
+  std::printf("%s\n", Describe(ScoreRegistration(FirstFromFrame(outcomes), truth.first_from_frame,
+                                                 truth.sequence.width(), truth.sequence.height()))
                           .c_str());
 }
 
-void WriteOverlays(const DetectSettings& settings, const std::vector<FrameOutcome>& outcomes) {
-  std::filesystem::create_directories(settings.overlay);
+void WriteOverlays(const DetectSettings& settings, const std::vector<FrameOutcome>& outcomes,
+                   const std::optional<Truth>& truth) {
   BoxesByFrame detections = ByFrame(Boxes(outcomes));
-  BoxesByFrame truth;
-  if (!settings.truth.empty()) truth = ByFrame(TruthUpTo(settings.truth, outcomes.size()));
+  BoxesByFrame movers;
+  if (truth) movers = ByFrame(truth->movers);
   const std::unique_ptr<FrameSource> source = OpenFrames(settings.source);
   for (int number = 1; number <= static_cast<int>(outcomes.size()); ++number) {
     ThrowIfInterrupted();
     cv::Mat frame = source->Next();
     if ((number - 1) % settings.every != 0) continue;
-    DrawBoxes(frame, detections[number], settings.truth.empty() ? nullptr : &truth[number],
+    DrawBoxes(frame, detections[number], truth ? &movers[number] : nullptr,
               "frame " + std::to_string(number));
     SequenceInfo names;
     names.image_folder.clear();
@@ -126,8 +162,16 @@ void WriteOverlays(const DetectSettings& settings, const std::vector<FrameOutcom
 void Detect(const DetectSettings& settings) {
   OfflineOptions options;
   for (const std::string& assignment : settings.assignments) SetOption(options, assignment);
+  const std::unique_ptr<FrameSource> source = OpenFrames(settings.source);
+  const std::optional<Truth> truth = ReadTruth(settings);
+  if (truth && source->knows_frames()) {
+    CheckLength(settings, *truth, FramesToCome(settings, *source));
+  }
+  std::filesystem::create_directories(settings.out);
+  if (!settings.overlay.empty()) std::filesystem::create_directories(settings.overlay);
   CatchInterrupts();
-  const std::vector<FrameOutcome> outcomes = RunDetection(settings, options);
+  const std::vector<FrameOutcome> outcomes = RunDetection(settings, options, *source, truth);
+  if (truth) CheckLength(settings, *truth, static_cast<int>(outcomes.size()));
   const auto lost = std::count_if(outcomes.begin(), outcomes.end(), [](const FrameOutcome& one) {
     return one.registration.quality == RegistrationQuality::kLost;
   });
@@ -136,8 +180,8 @@ void Detect(const DetectSettings& settings) {
   WriteHomographies(settings.out / "homography.txt", FirstFromFrame(outcomes));
   std::printf("%zu frames, %zu boxes, %lld lost\n", outcomes.size(), boxes.size(),
               static_cast<long long>(lost));
-  if (!settings.truth.empty()) PrintScores(settings, outcomes);
-  if (!settings.overlay.empty()) WriteOverlays(settings, outcomes);
+  if (truth) PrintScores(*truth, outcomes);
+  if (!settings.overlay.empty()) WriteOverlays(settings, outcomes, truth);
 }
 
 }  // namespace
@@ -152,7 +196,8 @@ void AddDetectCommand(CLI::App& app) {
   command->add_option("--frames", settings->frames, "Only so many frames from the start")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--truth", settings->truth,
-                      "Sequence whose truth is compared with the result; never read otherwise");
+                      "Sequence whose truth is compared with the result, frame by frame; never "
+                      "read otherwise");
   command->add_option("--overlay", settings->overlay,
                       "Folder for pictures with boxes: green hit, red false alarm, yellow miss");
   command->add_option("--every", settings->every, "Frames from one such picture to the next")

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 
@@ -18,13 +19,18 @@ void Progress::Advance() {
   const std::scoped_lock lock(mutex_);
   ++done_;
   const auto now = std::chrono::steady_clock::now();
-  const bool tenth = done_ * 10 / total_ != (done_ - 1) * 10 / total_;
-  const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : tenth;
+  const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : Passed();
   if (!due && done_ != total_) return;
   shown_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "%s%s %d/%d (%.1f a second)%s", terminal_ ? "\r" : "", label_.c_str(), done_,
-               total_, seconds > 0 ? done_ / seconds : 0.0, terminal_ ? "\x1b[K" : "\n");
+  const std::string total = total_ > 0 ? "/" + std::to_string(total_) : "";
+  std::fprintf(stderr, "%s%s %d%s (%.1f a second)%s", terminal_ ? "\r" : "", label_.c_str(), done_,
+               total.c_str(), seconds > 0 ? done_ / seconds : 0.0, terminal_ ? "\x1b[K" : "\n");
+}
+
+bool Progress::Passed() const {
+  if (total_ == 0) return done_ % 100 == 0;
+  return std::int64_t{10} * done_ / total_ != std::int64_t{10} * (done_ - 1) / total_;
 }
 
 void Progress::Finish() {

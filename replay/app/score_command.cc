@@ -2,12 +2,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "replay/app/commands.h"
 #include "replay/app/score_text.h"
+#include "replay/format/format_error.h"
 #include "replay/format/homographies.h"
 #include "replay/format/labels.h"
-#include "replay/format/sequence.h"
+#include "replay/format/truth.h"
 
 namespace windhover::replay {
 namespace {
@@ -16,20 +19,47 @@ struct ScoreSettings {
   std::filesystem::path truth;
   std::filesystem::path measured;
   double overlap = kThesisOverlap;
+  int frames = 0;  // 0: all
 };
 
 void PrintMotionScore(const ScoreSettings& settings) {
-  const MotionScore score = ScoreMotion(ReadBoxes(MoversPath(settings.truth)),
-                                        ReadDetections(settings.measured), settings.overlap);
+  const SequenceTruth truth(settings.truth, settings.frames);
+  std::vector<LabelledBox> detections = ReadDetections(settings.measured);
+  if (settings.frames > 0) {
+    std::erase_if(detections, [&](const LabelledBox& box) { return box.frame > settings.frames; });
+  }
+  for (const LabelledBox& box : detections) {
+    if (box.frame > truth.frames()) {
+      throw FormatError(settings.measured, "has a box in frame " + std::to_string(box.frame) +
+                                               ", but the truth is of " +
+                                               std::to_string(truth.frames()) + " frames");
+    }
+  }
+  const MotionScore score = ScoreMotion(truth.Movers(), detections, settings.overlap);
   std::printf("%s\n", Describe(score, settings.overlap).c_str());
 }
 
 void PrintRegistrationScore(const ScoreSettings& settings) {
-  const SequenceInfo info = ReadSequenceInfo(settings.truth);
-  const RegistrationScore score = ScoreRegistration(
-      ReadHomographies(settings.measured), ReadHomographies(HomographiesPath(settings.truth)),
-      info.width, info.height);
+  const SequenceTruth truth(settings.truth, settings.frames);
+  std::vector<Eigen::Matrix3d> measured = ReadHomographies(settings.measured);
+  const auto expected = static_cast<std::size_t>(truth.frames());
+  if (measured.size() < expected || (measured.size() > expected && settings.frames == 0)) {
+    throw FormatError(settings.measured, "is of " + std::to_string(measured.size()) +
+                                             " frames, but the truth of " +
+                                             std::to_string(expected) +
+                                             "; --frames compares only so many from the start");
+  }
+  measured.resize(expected);
+  const RegistrationScore score =
+      ScoreRegistration(measured, truth.Homographies(), truth.width(), truth.height());
   std::printf("%s\n", Describe(score).c_str());
+}
+
+void AddFramesOption(CLI::App& command, ScoreSettings& settings) {
+  command
+      .add_option("--frames", settings.frames,
+                  "Compare only so many frames from the start; otherwise both must have the same")
+      ->check(CLI::Range(1, 100000000));
 }
 
 }  // namespace
@@ -48,6 +78,7 @@ void AddScoreCommand(CLI::App& app) {
   motion->add_option("--overlap", settings->overlap, "Intersection over union that a hit exceeds")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  AddFramesOption(*motion, *settings);
   motion->final_callback([settings] { PrintMotionScore(*settings); });
   CLI::App* registration = command->add_subcommand(
       "registration", "RMS distance in px of homographies from truth over the visible ground");
@@ -57,6 +88,7 @@ void AddScoreCommand(CLI::App& app) {
       ->add_option("--homographies", settings->measured,
                    "homography.txt: frame and first_from_frame, row-major")
       ->required();
+  AddFramesOption(*registration, *settings);
   registration->final_callback([settings] { PrintRegistrationScore(*settings); });
 }
 

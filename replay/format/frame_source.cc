@@ -31,6 +31,7 @@ class SequenceFrames : public FrameSource {
     return frame;
   }
   int frames() const override { return info_.frames; }
+  bool knows_frames() const override { return true; }
 
  private:
   std::filesystem::path folder_;
@@ -53,9 +54,11 @@ class VideoFrames : public FrameSource {
     if (size_ != frame.size()) throw FormatError(file_, "the size of the frames changes");
     return frame;
   }
+  // OpenCV makes large negative numbers of an unknown length.
   int frames() const override {
-    return std::max(0, static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_COUNT)));
+    return static_cast<int>(std::clamp(capture_.get(cv::CAP_PROP_FRAME_COUNT), 0.0, 1e8));
   }
+  bool knows_frames() const override { return false; }
 
  private:
   std::filesystem::path file_;

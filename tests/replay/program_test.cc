@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
+#include "replay/format/sequence.h"
 #include "replay/format/text_lines.h"
 #include "tests/service/app_process.h"
 
@@ -102,6 +104,89 @@ TEST(Program, RendersDetectsAndScores) {
   ASSERT_EQ(blind.code, 0) << blind.text;
   EXPECT_EQ(Content(out + "/det.txt"), Content(out + "2/det.txt"));
   EXPECT_EQ(Content(out + "/homography.txt"), Content(out + "2/homography.txt"));
+}
+
+// The first frames of a sequence as pictures one after the other: a video that does not say how
+// long it is.
+void WriteRawVideo(const std::filesystem::path& sequence, int frames,
+                   const std::filesystem::path& file) {
+  const SequenceInfo info = ReadSequenceInfo(sequence);
+  std::ofstream video(file, std::ios::binary);
+  for (int frame = 1; frame <= frames; ++frame) {
+    std::vector<unsigned char> bytes;
+    ASSERT_TRUE(cv::imencode(".jpg", cv::imread(FramePath(sequence, info, frame).string()), bytes));
+    video.write(reinterpret_cast<const char*>(bytes.data()),
+                static_cast<std::streamsize>(bytes.size()));
+  }
+}
+
+// A run over fewer frames than the truth has must not look like a good one.
+TEST(Program, ASourceThatBreaksOffIsNotScored) {
+  const ScratchFolder folder;
+  const std::filesystem::path flight = folder / "flight";
+  ASSERT_EQ(Call("render --frames 24 --size 160x120 --out " + flight.string()).code, 0);
+  const std::filesystem::path video = folder / "flight.mjpeg";
+  WriteRawVideo(flight, 20, video);
+  const std::string out = (folder / "out").string();
+  const std::string detect = "detect " + video.string() + " --set device=cpu --out " + out;
+  const std::string truth = " --truth " + flight.string();
+
+  const Answer unscored = Call(detect + "1");
+  EXPECT_EQ(unscored.code, 0) << unscored.text;
+  EXPECT_THAT(unscored.text, HasSubstr("20 frames"));
+  const Answer broken_off = Call(detect + "2" + truth);
+  EXPECT_EQ(broken_off.code, 1);
+  EXPECT_THAT(broken_off.text, AllOf(HasSubstr("gives 20 frames"), HasSubstr("truth is of 24"),
+                                     Not(HasSubstr("precision"))));
+  EXPECT_TRUE(std::filesystem::is_empty(out + "2"));
+  const Answer start = Call(detect + "3 --frames 20" + truth);
+  EXPECT_EQ(start.code, 0) << start.text;
+  EXPECT_THAT(start.text, AllOf(HasSubstr("precision"), HasSubstr("registration over 19 pairs")));
+
+  // So is it with results from elsewhere.
+  const std::string motion = "score motion --detections " + out + "1/det.txt" + truth;
+  const std::string registration =
+      "score registration --homographies " + out + "1/homography.txt" + truth;
+  const Answer refused = Call(registration);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.text, AllOf(HasSubstr("of 20 frames"), HasSubstr("truth of 24")));
+  EXPECT_EQ(Call(registration + " --frames 21").code, 1);
+  EXPECT_THAT(start.text, HasSubstr(Call(registration + " --frames 20").text));
+  EXPECT_THAT(Call(registration + " --frames 5").text, HasSubstr("over 4 pairs"));
+  EXPECT_THAT(start.text, HasSubstr(Call(motion + " --frames 20").text));
+  EXPECT_THAT(Call(motion + " --frames 25").text, HasSubstr("has 24 frames, but 25"));
+  WriteText(out + "1/det.txt", "25,1,1,1,5,5,1\n");
+  EXPECT_THAT(Call(motion).text, HasSubstr("box in frame 25"));
+}
+
+TEST(Program, WhatIsWrongIsSaidBeforeTheWork) {
+  const ScratchFolder folder;
+  const std::filesystem::path flight = folder / "flight";
+  ASSERT_EQ(Call("render --frames 3 --size 160x120 --out " + flight.string()).code, 0);
+  const std::string out = (folder / "out").string();
+  const std::string detect = "detect " + flight.string() + " --set device=cpu --out " + out;
+  const auto expect = [](const std::string& arguments, const std::string& reason) {
+    const Answer answer = Call(arguments);
+    EXPECT_EQ(answer.code, 1) << arguments;
+    EXPECT_THAT(answer.text, AllOf(HasSubstr(reason), Not(HasSubstr("detecting"))));
+  };
+  expect(detect + " --truth " + folder.path().string(), "seqinfo.ini: cannot be read");
+  const std::filesystem::path truth = folder / "truth";
+  std::filesystem::copy(flight, truth, std::filesystem::copy_options::recursive);
+  SequenceInfo info = ReadSequenceInfo(truth);
+  info.width = 320;
+  WriteSequenceInfo(truth, info);
+  expect(detect + " --truth " + truth.string(), "is of 160x120 px, but the truth of 320x120");
+  info.width = 160;
+  info.frames = 2;
+  WriteSequenceInfo(truth, info);
+  expect(detect + " --truth " + truth.string(), "seqinfo.ini says that there are 2");
+  std::filesystem::remove(HomographiesPath(truth));
+  WriteText(MoversPath(truth), "1,1,1,1,9,9,1\n");
+  expect(detect + " --truth " + truth.string(), "gives 3 frames, but the truth is of 2");
+  WriteText(out + "2", "a file\n");
+  expect(detect + "2", "out2");
+  EXPECT_EQ(Content(out + "2"), "a file\n");
 }
 
 TEST(Program, AnInterruptLeavesNothingBehind) {

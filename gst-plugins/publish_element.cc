@@ -105,7 +105,8 @@ void PublishElement::Start() {
   GST_OBJECT_LOCK(host());
   const bool changed = options_changed_;
   GST_OBJECT_UNLOCK(host());
-  if (changed) MakePublisher();
+  // Null where the last attempt threw.
+  if (changed || publisher_ == nullptr) MakePublisher();
 }
 
 void PublishElement::Stop() { End(); }

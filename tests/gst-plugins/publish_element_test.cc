@@ -108,16 +108,27 @@ TEST(PublishElement, BadOptionIsAnErrorAtTheStart) {
 TEST(PublishElement, OptionsMayChangeInReady) {
   const ElementPtr publish = MakeElement("whpublish");
   ASSERT_EQ(gst_element_set_state(publish.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
-  g_object_set(publish.get(), "stream", StreamName().c_str(), nullptr);
+  g_object_set(publish.get(), "partition", StreamName().c_str(), nullptr);
   ASSERT_EQ(gst_element_set_state(publish.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
   SubscribeOptions options;
-  options.stream = StreamName();
+  options.partition = StreamName();
   Subscriber subscriber(options);
   int value = 0;
   while (value == 0) {
     ASSERT_TRUE(subscriber.Poll(std::chrono::seconds(10), {}));
     g_object_get(publish.get(), "subscribers", &value, nullptr);
   }
+}
+
+// Without a publisher there must be no way to frames.
+TEST(PublishElement, BadOptionInReadyIsAnErrorEachTime) {
+  const ElementPtr publish = MakeElement("whpublish");
+  ASSERT_EQ(gst_element_set_state(publish.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  g_object_set(publish.get(), "stream", "", nullptr);
+  EXPECT_EQ(gst_element_set_state(publish.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  EXPECT_EQ(gst_element_set_state(publish.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  g_object_set(publish.get(), "stream", StreamName().c_str(), nullptr);
+  EXPECT_EQ(gst_element_set_state(publish.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
 }
 
 TEST(PublishElement, NeedsRegistration) {

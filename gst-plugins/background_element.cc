@@ -83,7 +83,6 @@ GstFlowReturn BackgroundElement::Process(BufferPtr buffer) {
 }
 
 GstFlowReturn BackgroundElement::SendComplete() {
-  GstFlowReturn result = GST_FLOW_OK;
   while (std::shared_ptr<const MotionEvidence> evidence = background_->Pop()) {
     BufferPtr buffer = held_.TakeFrame();
     if (buffer == nullptr) throw std::logic_error("evidence for a frame that is not held");
@@ -92,11 +91,15 @@ GstFlowReturn BackgroundElement::SendComplete() {
     }
     buffer = MakeWritable(std::move(buffer));
     AddEvidence(buffer.get(), std::move(evidence));
-    const GstFlowReturn pushed = Push(std::move(buffer));
-    if (result == GST_FLOW_OK) result = pushed;
+    const GstFlowReturn result = Push(std::move(buffer));
+    if (result != GST_FLOW_OK) {
+      // A flush or the end must not wait for evidence that nobody takes.
+      Reset();
+      return result;
+    }
     while (GstEvent* event = held_.TakeEvent()) PushEvent(event);
   }
-  return result;
+  return GST_FLOW_OK;
 }
 
 bool BackgroundElement::Forward(GstEvent* event) {

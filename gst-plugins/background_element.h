@@ -37,6 +37,7 @@ class BackgroundElement
   bool AnswerContext(GstQuery* query) override { return shared_.Answer(query); }
 
  private:
+  // Sends on each frame whose evidence is complete. Drops all that is held where that fails.
   GstFlowReturn SendComplete();
   void SetLatency(GstClockTime latency);
 

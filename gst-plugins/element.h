@@ -53,7 +53,8 @@ class Element {
   virtual GstFlowReturn Process(BufferPtr buffer) = 0;
   // A serialised event that needs no other treatment; sends it on behind the frames held.
   virtual bool Forward(GstEvent* event);
-  // Sends on all that is held: no frame that belongs to it follows.
+  // Sends on all that is held: no frame that belongs to it follows. Drops the rest where downstream
+  // does not take it.
   virtual GstFlowReturn Drain() { return GST_FLOW_OK; }
   // What follows has nothing to do with what came before: after Drain at a gap or another segment,
   // without it after a flush, where what is held must be dropped.

@@ -248,6 +248,40 @@ TEST_F(BackgroundElementTest, GapAndDiscontDrain) {
   }
 }
 
+// The evidence takes long to compute; where nobody takes it, a flush or the end must not wait.
+TEST_F(BackgroundElementTest, DrainStopsWhereNobodyTakesTheFrames) {
+  Harness harness(Chain(4, 4));
+  harness.SetCaps(video_.Caps());
+  for (int t = 0; t < 6; ++t) harness.Push(video_.Frame(t));
+  ASSERT_EQ(harness.PullAll().size(), 2u);
+  GstElement* background = harness.Find("background");
+  GstPad* pad = gst_element_get_static_pad(background, "src");
+  int tried = 0;
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo*, gpointer count) {
+        ++*static_cast<int*>(count);
+        return GST_PAD_PROBE_OK;
+      },
+      &tried, nullptr);
+  gst_object_unref(pad);
+  gst_object_unref(background);
+  GST_PAD_SET_FLUSHING(harness.get()->sinkpad);
+  harness.PushEvent(gst_event_new_gap(GST_SECOND, GST_SECOND));
+  EXPECT_EQ(tried, 1);
+
+  // What was held is gone as a whole; the frames that follow find their own evidence.
+  GST_PAD_UNSET_FLUSHING(harness.get()->sinkpad);
+  for (int t = 6; t < 12; ++t) EXPECT_EQ(harness.Push(video_.Frame(t)), GST_FLOW_OK);
+  harness.PushEvent(gst_event_new_eos());
+  const auto out = harness.PullAll();
+  ASSERT_EQ(out.size(), 6u);
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    EXPECT_EQ(GST_BUFFER_OFFSET(out[t].get()), t + 6);
+    EXPECT_EQ(TakeEvidence(out[t].get())->registration.frame_number, t + 6);
+  }
+}
+
 TEST_F(BackgroundElementTest, AsksForBuffersThatItHolds) {
   Harness harness(Chain(4, 4));
   gst_harness_set_propose_allocator(harness.get(), nullptr, nullptr);

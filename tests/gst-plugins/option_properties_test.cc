@@ -96,7 +96,7 @@ TEST(OptionProperties, BlurbTellsUnitAndRange) {
   EXPECT_STREQ(g_param_spec_get_nick(spec), "Max speed");
 }
 
-// GObject keeps values out of range away, without a word to the element.
+// GObject keeps values out of range away from the element, and warns.
 TEST(OptionProperties, RangeHolds) {
   const ElementPtr element = MakeElement("whbackground");
   GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element.get()), "threshold");
@@ -104,6 +104,19 @@ TEST(OptionProperties, RangeHolds) {
   EXPECT_EQ(G_PARAM_SPEC_INT(spec)->minimum, 1);
   EXPECT_EQ(G_PARAM_SPEC_INT(spec)->maximum, 255);
   EXPECT_EQ(G_PARAM_SPEC_INT(spec)->default_value, defaults.threshold);
+
+  int warnings = 0;
+  const guint handler = g_log_set_handler(
+      "GLib-GObject", G_LOG_LEVEL_WARNING,
+      [](const gchar*, GLogLevelFlags, const gchar*, gpointer count) {
+        ++*static_cast<int*>(count);
+      },
+      &warnings);
+  g_object_set(element.get(), "threshold", 17, nullptr);
+  for (const int wrong : {0, 256}) g_object_set(element.get(), "threshold", wrong, nullptr);
+  g_log_remove_handler("GLib-GObject", handler);
+  EXPECT_EQ(PropertyText(element.get(), "threshold"), "17");
+  EXPECT_EQ(warnings, 2);
 }
 
 TEST(OptionProperties, UnknownIdIsRefused) {

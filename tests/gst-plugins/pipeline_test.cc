@@ -125,8 +125,7 @@ TEST(Pipeline, LiveSourceInASyncedSink) {
   gst_query_unref(query);
 }
 
-// A seek in a file flushes; the stream goes on from there.
-TEST(Pipeline, StopsInTheMiddle) {
+TEST(Pipeline, GoesOnAfterAFlushingSeek) {
   for (int round = 0; round < 3; ++round) {
     Pipeline pipeline(
         "videotestsrc ! video/x-raw,format=GRAY8,width=176,height=144,framerate=25/1 ! " +

@@ -127,9 +127,10 @@ TEST_F(RegisterElementTest, BlackVideoIsLostWithoutNan) {
   gst_structure_free(messages[0]);
 }
 
-enum class Break { kDiscont, kGap, kSegment, kFlush };
+enum class Break { kDiscont, kGap, kSegment, kStream, kSegmentDone, kGroupDone, kFlush };
 std::string NameOf(Break kind) {
-  constexpr const char* kNames[] = {"Discont", "Gap", "Segment", "Flush"};
+  constexpr const char* kNames[] = {"Discont",     "Gap",       "Segment", "Stream",
+                                    "SegmentDone", "GroupDone", "Flush"};
   return kNames[static_cast<int>(kind)];
 }
 void PrintTo(Break kind, std::ostream* out) { *out << NameOf(kind); }
@@ -154,6 +155,15 @@ TEST_P(RegisterBreakTest, StartsASegmentAndCountsOn) {
     case Break::kSegment:
       EXPECT_TRUE(harness.PushEvent(gst_event_new_segment(&segment)));
       break;
+    case Break::kStream:
+      EXPECT_TRUE(harness.PushEvent(gst_event_new_stream_start("another")));
+      break;
+    case Break::kSegmentDone:
+      EXPECT_TRUE(harness.PushEvent(gst_event_new_segment_done(GST_FORMAT_TIME, GST_SECOND)));
+      break;
+    case Break::kGroupDone:
+      EXPECT_TRUE(harness.PushEvent(gst_event_new_stream_group_done(1)));
+      break;
     case Break::kFlush:
       harness.Flush();
       break;
@@ -170,10 +180,10 @@ TEST_P(RegisterBreakTest, StartsASegmentAndCountsOn) {
 
 INSTANTIATE_TEST_SUITE_P(Breaks, RegisterBreakTest,
                          testing::Values(Break::kDiscont, Break::kGap, Break::kSegment,
+                                         Break::kStream, Break::kSegmentDone, Break::kGroupDone,
                                          Break::kFlush),
                          [](const auto& info) { return NameOf(info.param); });
 
-// The same segment again, as after a change of its stop alone: nothing is torn.
 TEST_F(RegisterElementTest, TheSameSegmentAgainIsNoBreak) {
   Harness harness(kRegister);
   harness.SetCaps(video_.Caps());

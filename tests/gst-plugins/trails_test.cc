@@ -61,13 +61,21 @@ TEST(Trails, ShrinkAndEndWhenTheTrackIsGone) {
 TEST(Trails, EndWhereTheGroundIsKnownAnew) {
   const FrameRegistration still = Step(Eigen::Matrix3d::Identity());
   for (const bool lost : {false, true}) {
-    Trails trails(4);
-    trails.Advance(still, ObjectAt(1, {10.0, 10.0}));
     FrameRegistration anew = still;
     anew.starts_segment = !lost;
     anew.quality = lost ? RegistrationQuality::kLost : RegistrationQuality::kValid;
+    Trails trails(8);
+    const auto three_points = [&] {
+      for (int t = 0; t < 3; ++t) trails.Advance(still, ObjectAt(1, {10.0 + t, 10.0}));
+      return trails.trails().size() == 1 && trails.trails()[0].points.size() == 3;
+    };
+    ASSERT_TRUE(three_points());
     trails.Advance(anew, {});
     EXPECT_TRUE(trails.trails().empty());
+    ASSERT_TRUE(three_points());
+    trails.Advance(anew, ObjectAt(1, {13.0, 10.0}));
+    ASSERT_EQ(trails.trails().size(), 1u);
+    EXPECT_EQ(trails.trails()[0].points.size(), 1u) << "of the new ground";
   }
 }
 

@@ -41,7 +41,8 @@ void WarnOf(GstElement* element, const std::string& text) {
 GstContext* MakeBackendContext(const std::shared_ptr<Backend>& backend, const std::string& device) {
   GstContext* context = gst_context_new(kBackendContextType, TRUE);
   gst_structure_set(gst_context_writable_structure(context), "backend", BoxedBackendType(),
-                    &backend, "device", G_TYPE_STRING, device.c_str(), nullptr);
+                    &backend, "device", G_TYPE_STRING, device.c_str(), "description", G_TYPE_STRING,
+                    backend->device().Describe().c_str(), nullptr);
   return context;
 }
 

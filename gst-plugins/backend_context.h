@@ -13,8 +13,9 @@ namespace windhover {
 
 // The elements of one pipeline share one Backend through a GstContext of this type, as GStreamer's
 // GL elements share their display. Its structure has the fields
-//   "backend"   a boxed std::shared_ptr<Backend>
-//   "device"    the text that it was made from (see Backend::Create)
+//   "backend"       a boxed std::shared_ptr<Backend>
+//   "device"        the text that it was made from (see Backend::Create)
+//   "description"   its device, for people (see DeviceInfo::Describe)
 // An application may make one itself and set it on the pipeline.
 inline constexpr char kBackendContextType[] = "windhover.backend";
 

@@ -6,6 +6,11 @@
 
 #include <functional>
 
+#include "gpu-kernels/decimate/decimate.h"
+#include "gpu-kernels/difference_threshold/difference_threshold.h"
+#include "gpu-kernels/phase_correlation/phase_correlation.h"
+#include "gpu-kernels/temporal_median/temporal_median.h"
+#include "gpu-kernels/warp/warp.h"
 #include "tests/gst-plugins/harness.h"
 
 namespace windhover {
@@ -35,8 +40,12 @@ TEST(BackendContext, HoldsTheBackend) {
   const auto backend = Backend::Create("cpu");
   GstContext* context = MakeBackendContext(backend, "cpu");
   EXPECT_EQ(BackendOfContext(context), backend);
-  gchar* text = gst_structure_to_string(gst_context_get_structure(context));
-  EXPECT_THAT(text, testing::HasSubstr("twin")) << "for people who watch the bus";
+  const GstStructure* fields = gst_context_get_structure(context);
+  EXPECT_STREQ(gst_structure_get_string(fields, "device"), "cpu");
+  EXPECT_EQ(gst_structure_get_string(fields, "description"), backend->device().Describe());
+  gchar* text = gst_structure_to_string(fields);
+  EXPECT_THAT(text, testing::HasSubstr("(GstWindhoverBackend)\"CPU\\ twin\""))
+      << "gst-launch-1.0 prints it";
   g_free(text);
   gst_context_unref(context);
 
@@ -92,17 +101,45 @@ TEST(BackendContext, ApplicationsMaySetOne) {
   EXPECT_EQ(BackendOf(pipeline, "b"), backend);
 }
 
+// A device that nobody computes on.
+class PretendedBackend : public Backend {
+ public:
+  PretendedBackend() {
+    device_.kind = DeviceKind::kOpenClGpu;
+    device_.name = "idle";
+    device_.selector = "pretended:GPU:idle";
+  }
+  const DeviceInfo& device() const override { return device_; }
+  std::unique_ptr<Memory> Allocate(std::size_t) override { return nullptr; }
+  std::unique_ptr<Decimate> MakeDecimate() override { return nullptr; }
+  std::unique_ptr<DifferenceThreshold> MakeDifferenceThreshold() override { return nullptr; }
+  std::unique_ptr<PhaseCorrelation> MakePhaseCorrelation(const PhaseCorrelationSettings&) override {
+    return nullptr;
+  }
+  std::unique_ptr<TemporalMedian> MakeTemporalMedian() override { return nullptr; }
+  std::unique_ptr<Warp> MakeWarp() override { return nullptr; }
+  void WarmUp(const std::function<void(const std::string&)>&) override {}
+
+ private:
+  DeviceInfo device_;
+};
+
 TEST(SharedBackend, AnotherDeviceMakesItsOwn) {
   const ElementPtr element = MakeElement("fakesink");
-  const auto shared = Backend::Create("cpu");
+  const auto shared = std::make_shared<PretendedBackend>();
   SharedBackend part(element.get());
   GstContext* context = MakeBackendContext(shared, "pretended:GPU:");
   part.SetContext(context);
+  gst_context_unref(context);
   EXPECT_EQ(part.Acquire(""), shared);
   EXPECT_EQ(part.Acquire("pretended:GPU:"), shared);
-  EXPECT_EQ(part.Acquire("cpu"), shared) << "its device's own selector";
+  EXPECT_EQ(part.Acquire("pretended:GPU:idle"), shared) << "its device's own selector";
+  const auto own = part.Acquire("cpu");
+  EXPECT_NE(own, shared);
+  EXPECT_EQ(own->device().selector, "cpu");
   EXPECT_THROW(part.Acquire("no such:GPU:device"), DeviceError);
-  gst_context_unref(context);
+  EXPECT_EQ(part.Acquire(""), shared) << "others of the pipeline still share it";
+  EXPECT_EQ(BackendOf(element.get()), nullptr) << "the own one is offered to nobody";
 }
 
 TEST(BackendContext, UnknownDeviceIsAnError) {

@@ -5,13 +5,15 @@
 
 namespace windhover::replay {
 
-// A folder that gets its final name only when it is complete, so that an interrupted program leaves
-// no half sequence under that name. Until Commit its content lies in a hidden neighbour, which the
-// destructor removes. What is there already is replaced only if it is a sequence or empty.
+// A sequence's folder that gets its final name only when it is complete, so that an interrupted
+// program leaves no half sequence under that name. Until Commit its content lies in a hidden
+// neighbour, ".NAME.pending-PID", which the destructor removes; where a program was killed, the
+// next one for the same name does. What is there already is replaced only if it is an empty folder
+// or a sequence that this program has rendered and nothing else has been put into.
 class PendingFolder {
  public:
-  // Throws FormatError where `final_path` is something else than a sequence or an empty folder, and
-  // std::filesystem::filesystem_error where the neighbour cannot be made.
+  // Throws FormatError where `final_path` is anything else, and std::filesystem::filesystem_error
+  // where the neighbour cannot be made.
   explicit PendingFolder(std::filesystem::path final_path);
   ~PendingFolder();
   PendingFolder(const PendingFolder&) = delete;

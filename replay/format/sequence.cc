@@ -34,6 +34,7 @@ SequenceInfo ReadSequenceInfo(const std::filesystem::path& sequence) {
     const std::string_view key = Trimmed(text.substr(0, equals));
     const std::string_view value = Trimmed(text.substr(equals + 1));
     if (key == "name") info.name = value;
+    if (key == "renderedBy") info.rendered_by = value;
     if (key == "imDir") info.image_folder = value;
     if (key == "imExt") info.image_extension = value;
     if (key == "seqLength") info.frames = WholeNumber(file, line, value);
@@ -55,12 +56,12 @@ SequenceInfo ReadSequenceInfo(const std::filesystem::path& sequence) {
 }
 
 void WriteSequenceInfo(const std::filesystem::path& sequence, const SequenceInfo& info) {
-  WriteText(
-      sequence / "seqinfo.ini",
-      "[Sequence]\nname=" + info.name + "\nimDir=" + info.image_folder +
-          "\nframeRate=" + NumberText(info.frame_rate_hz, 17) +
-          "\nseqLength=" + std::to_string(info.frames) + "\nimWidth=" + std::to_string(info.width) +
-          "\nimHeight=" + std::to_string(info.height) + "\nimExt=" + info.image_extension + "\n");
+  WriteText(sequence / "seqinfo.ini",
+            "[Sequence]\nname=" + info.name + "\nimDir=" + info.image_folder + "\nframeRate=" +
+                NumberText(info.frame_rate_hz, 17) + "\nseqLength=" + std::to_string(info.frames) +
+                "\nimWidth=" + std::to_string(info.width) +
+                "\nimHeight=" + std::to_string(info.height) + "\nimExt=" + info.image_extension +
+                (info.rendered_by.empty() ? "" : "\nrenderedBy=" + info.rendered_by) + "\n");
 }
 
 std::filesystem::path FramePath(const std::filesystem::path& sequence, const SequenceInfo& info,

@@ -6,6 +6,10 @@
 
 namespace windhover::replay {
 
+// What seqinfo.ini's key renderedBy says in sequences that this program has rendered. Others do not
+// have the key.
+inline constexpr const char* kRenderer = "windhover-replay";
+
 // A MOTChallenge sequence: one folder with
 //   seqinfo.ini         what SequenceInfo holds
 //   img1/000001.png     the frames; file frame numbers count from 1 everywhere in the folder
@@ -14,6 +18,7 @@ namespace windhover::replay {
 //   gt/homography.txt   first_from_frame of each frame (homographies.h)
 struct SequenceInfo {
   std::string name;
+  std::string rendered_by;  // kRenderer, or empty: not by this program
   std::string image_folder = "img1";
   std::string image_extension = ".png";
   double frame_rate_hz = 25.0;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <Eigen/LU>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "replay/format/format_error.h"
 #include "replay/format/frame_source.h"
@@ -180,6 +183,21 @@ TEST(HomographyFormat, MalformedLinesAreNamedWithLineAndReason) {
   EXPECT_THAT(complain("1 0 0 0 0 1 0 0 0 1\n"), HasSubstr("inverse"));
 }
 
+// A sequence as the renderer leaves it.
+void WriteRendered(const std::filesystem::path& sequence, const std::string& name) {
+  SequenceInfo info;
+  info.name = name;
+  info.rendered_by = kRenderer;
+  info.frames = 1;
+  info.width = 32;
+  info.height = 24;
+  WriteSequenceInfo(sequence, info);
+  WriteText(FramePath(sequence, info, 1), "a picture\n");
+  WriteText(MoversPath(sequence), "");
+  WriteText(DecoysPath(sequence), "");
+  WriteText(HomographiesPath(sequence), "");
+}
+
 TEST(PendingFolder, AppearsOnlyWhenComplete) {
   const ScratchFolder folder;
   const std::filesystem::path final_path = folder.path() / "flight";
@@ -187,14 +205,76 @@ TEST(PendingFolder, AppearsOnlyWhenComplete) {
     const PendingFolder pending(final_path);
     WriteText(pending.path() / "seqinfo.ini", "half\n");
   }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  for (const char* text : {"first\n", "second\n"}) {
-    PendingFolder pending(final_path);
-    WriteText(pending.path() / "seqinfo.ini", text);
+  EXPECT_TRUE(folder.Names().empty());
+  std::filesystem::create_directory(final_path);
+  for (const char* name : {"first", "second"}) {
+    PendingFolder pending(final_path / "");
+    WriteRendered(pending.path(), name);
     pending.Commit();
-    EXPECT_EQ(Content(final_path / "seqinfo.ini"), text);
+    EXPECT_EQ(ReadSequenceInfo(final_path).name, name);
   }
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  EXPECT_EQ(folder.Names(), std::vector<std::string>{"flight"});
+}
+
+TEST(PendingFolder, ReplacesWhatALinkLeadsTo) {
+  const ScratchFolder folder;
+  WriteRendered(folder / "flight", "first");
+  std::filesystem::create_directory_symlink(folder / "flight", folder / "link");
+  PendingFolder pending(folder / "link");
+  WriteRendered(pending.path(), "second");
+  pending.Commit();
+  EXPECT_EQ(ReadSequenceInfo(folder / "flight").name, "second");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+}
+
+TEST(PendingFolder, NeverReplacesWhatItHasNotRendered) {
+  const ScratchFolder folder;
+  const std::filesystem::path sequence = folder / "flight";
+  const auto complain = [&] { return Complaint([&] { PendingFolder{sequence}; }); };
+  WriteRendered(sequence, "ours");
+  EXPECT_EQ(complain(), "(nothing thrown)");
+  for (const char* file : {"notes.txt", "det/det.txt", "img1/notes.png", "img1/000001.jpg",
+                           "img1/more/000002.png", "gt/boxes.txt"}) {
+    WriteText(sequence / file, "mine\n");
+    const std::string top = std::string(file).substr(0, std::string(file).rfind('/'));
+    EXPECT_THAT(complain(), AllOf(HasSubstr("not replaced"), HasSubstr(top))) << file;
+    EXPECT_EQ(Content(sequence / file), "mine\n");
+    std::filesystem::remove(sequence / file);
+    if (top == "det" || top == "img1/more") std::filesystem::remove(sequence / top);
+    EXPECT_EQ(complain(), "(nothing thrown)") << file;
+  }
+  SequenceInfo others = ReadSequenceInfo(sequence);
+  others.rendered_by.clear();
+  WriteSequenceInfo(sequence, others);
+  EXPECT_THAT(complain(), AllOf(HasSubstr("not replaced"), HasSubstr("renderedBy")));
+  EXPECT_TRUE(std::filesystem::exists(FramePath(sequence, others, 1)));
+}
+
+// The number of a process that has ended.
+pid_t DeadProcess() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST(PendingFolder, RemovesWhatKilledProgramsHaveLeft) {
+  const ScratchFolder folder;
+  const std::string dead = std::to_string(DeadProcess());
+  WriteText(folder / (".flight.pending-" + dead) / "seqinfo.ini", "half\n");
+  WriteText(folder / ".flight.pending-1" / "seqinfo.ini", "of a program that runs\n");
+  WriteText(folder / (".flight.pending-" + dead + "a") / "letter.txt", "not ours\n");
+  WriteText(folder / (".flight2.pending-" + dead) / "seqinfo.ini", "of another name\n");
+  WriteRendered(folder / (".flight.old-" + dead), "moved away by a program that was killed then");
+  { const PendingFolder pending(folder / "flight"); }
+  EXPECT_THAT(folder.Names(), testing::UnorderedElementsAre("flight", ".flight.pending-1",
+                                                            ".flight.pending-" + dead + "a",
+                                                            ".flight2.pending-" + dead));
+  EXPECT_THAT(ReadSequenceInfo(folder / "flight").name, HasSubstr("moved away"));
+  WriteRendered(folder / (".flight.old-" + dead), "what has been replaced");
+  { const PendingFolder pending(folder / "flight"); }
+  EXPECT_FALSE(std::filesystem::exists(folder / (".flight.old-" + dead)));
+  EXPECT_THAT(ReadSequenceInfo(folder / "flight").name, HasSubstr("moved away"));
 }
 
 TEST(PendingFolder, NeverReplacesWhatIsNoSequence) {
@@ -202,7 +282,7 @@ TEST(PendingFolder, NeverReplacesWhatIsNoSequence) {
   WriteText(folder.path() / "home" / "letter.txt", "dear\n");
   EXPECT_THAT(Complaint([&] { PendingFolder(folder.path() / "home"); }), HasSubstr("no sequence"));
   EXPECT_THAT(Complaint([&] { PendingFolder(folder.path() / "home" / "letter.txt"); }),
-              HasSubstr("no sequence"));
+              HasSubstr("no folder"));
   EXPECT_EQ(Content(folder.path() / "home" / "letter.txt"), "dear\n");
 }
 

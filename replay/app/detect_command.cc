@@ -181,7 +181,12 @@ void Detect(const DetectSettings& settings) {
   std::printf("%zu frames, %zu boxes, %lld lost\n", outcomes.size(), boxes.size(),
               static_cast<long long>(lost));
   if (truth) PrintScores(*truth, outcomes);
-  if (!settings.overlay.empty()) WriteOverlays(settings, outcomes, truth);
+  if (settings.overlay.empty()) return;
+  try {
+    WriteOverlays(settings, outcomes, truth);
+  } catch (const Interrupted&) {
+    throw Interrupted("det.txt and homography.txt are complete, the pictures are not");
+  }
 }
 
 }  // namespace

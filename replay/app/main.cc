@@ -20,8 +20,8 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
-  } catch (const windhover::replay::Interrupted&) {
-    std::fputs("\nwindhover-replay: interrupted; nothing half-written is left\n", stderr);
+  } catch (const windhover::replay::Interrupted& interrupted) {
+    std::fprintf(stderr, "\nwindhover-replay: %s\n", interrupted.what());
     return 130;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "windhover-replay: %s\n", error.what());

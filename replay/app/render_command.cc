@@ -46,24 +46,18 @@ void WriteTruth(const std::filesystem::path& folder, const std::vector<FrameTrut
   WriteHomographies(HomographiesPath(folder), homographies);
 }
 
-void Render(const RenderSettings& settings) {
-  FlightPlan plan = FindFlightPlan(settings.sequence);
-  if (settings.frames > 0) plan.frames = settings.frames;
-  if (settings.seed > 0) plan.seed = settings.seed;
-  if (!settings.size.empty()) ParseSize(settings.size, plan.width, plan.height);
-  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const int threads = settings.threads > 0 ? settings.threads : cores;
-
-  PendingFolder folder(settings.out);
+// Returns with the whole sequence in place, or throws and leaves nothing.
+void RenderInto(const std::filesystem::path& out, const FlightPlan& plan, int threads) {
+  PendingFolder folder(out);
   const SequenceInfo info = {.name = plan.number + "-" + plan.name,
+                             .rendered_by = kRenderer,
                              .frame_rate_hz = plan.frame_rate_hz,
                              .frames = plan.frames,
                              .width = plan.width,
                              .height = plan.height};
   std::filesystem::create_directories(folder.path() / info.image_folder);
-  CatchInterrupts();
   std::fprintf(stderr, "painting the ground of %s\n", info.name.c_str());
-  const Renderer renderer(plan, threads);
+  const Renderer renderer(plan, threads, ThrowIfInterrupted);
   std::vector<FrameTruth> truth(plan.frames);
   Progress progress("rendering", plan.frames);
   ForEachInParallel(plan.frames, threads, [&](int frame) {
@@ -79,6 +73,22 @@ void Render(const RenderSettings& settings) {
   WriteTruth(folder.path(), truth);
   WriteSequenceInfo(folder.path(), info);
   folder.Commit();
+}
+
+void Render(const RenderSettings& settings) {
+  FlightPlan plan = FindFlightPlan(settings.sequence);
+  if (settings.frames > 0) plan.frames = settings.frames;
+  if (settings.seed > 0) plan.seed = settings.seed;
+  if (!settings.size.empty()) ParseSize(settings.size, plan.width, plan.height);
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = settings.threads > 0 ? settings.threads : cores;
+
+  CatchInterrupts();
+  try {
+    RenderInto(settings.out, plan, threads);
+  } catch (const Interrupted&) {
+    throw Interrupted("nothing half-written is left");
+  }
   std::printf("%s\n", settings.out.string().c_str());
 }
 

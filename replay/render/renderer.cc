@@ -98,7 +98,7 @@ struct Seen {
 
 }  // namespace
 
-Renderer::Renderer(const FlightPlan& plan, int threads)
+Renderer::Renderer(const FlightPlan& plan, int threads, const std::function<void()>& go_on)
     : plan_(plan),
       scene_(BuildScene(plan)),
       camera_path_(plan.camera, plan.width, plan.height, plan.seed),
@@ -111,7 +111,7 @@ Renderer::Renderer(const FlightPlan& plan, int threads)
   Eigen::Vector2d high;
   FindReach(camera_path_, plan, low, high);
   const double texel_m = std::clamp(0.5 * camera_path_.pixel_m(), 0.06, 0.2);
-  terrain_ = std::make_unique<const Terrain>(scene_, low, high, texel_m, threads);
+  terrain_ = std::make_unique<const Terrain>(scene_, low, high, texel_m, threads, go_on);
   for (const ParkedVehicle& parked : scene_.parked) {
     parked_sun_.push_back(terrain_->SunAt(parked.position));
   }

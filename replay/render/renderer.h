@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -40,9 +41,10 @@ inline constexpr int kLeastWidthPx = 3;
 // alone, to the bit, whatever is asked for in whatever order and on however many threads.
 class Renderer {
  public:
-  // Paints the terrain on `threads` threads; takes some seconds. The plan must make sense:
-  // std::invalid_argument for sizes under 16 px and no frames.
-  Renderer(const FlightPlan& plan, int threads);
+  // Paints the terrain on `threads` threads; takes some seconds. Meanwhile `go_on` is called now
+  // and then, from any of them; what it throws ends the work and comes out here. The plan must make
+  // sense: std::invalid_argument for sizes under 16 px and no frames.
+  Renderer(const FlightPlan& plan, int threads, const std::function<void()>& go_on = {});
 
   const FlightPlan& plan() const { return plan_; }
   // Thread-safe. `frame` from 0 to plan().frames - 1; CV_8UC3, blue first.

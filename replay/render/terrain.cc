@@ -27,7 +27,7 @@ int Ceiling(double value) { return static_cast<int>(std::ceil(value)); }
 }  // namespace
 
 Terrain::Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-                 double texel_m, int threads)
+                 double texel_m, int threads, const std::function<void()>& go_on)
     : origin_(low),
       texel_m_(texel_m),
       width_(Ceiling((high.x() - low.x()) / texel_m) + 2),
@@ -38,13 +38,15 @@ Terrain::Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Ve
       heights_(colours_.size()),
       highest_(static_cast<std::size_t>(blocks_x_) * blocks_y_),
       highest_around_(highest_.size()) {
-  Paint(scene, threads);
+  const std::function<void()> check = go_on ? go_on : [] {};
+  Paint(scene, threads, check);
   FindHighest();
-  Light(scene, threads);
+  Light(scene, threads, check);
 }
 
-void Terrain::Paint(const Scene& scene, int threads) {
+void Terrain::Paint(const Scene& scene, int threads, const std::function<void()>& go_on) {
   ForEachInParallel((height_ + kStripRows - 1) / kStripRows, threads, [&](int i) {
+    go_on();
     const int row = i * kStripRows;
     const std::size_t first = static_cast<std::size_t>(row) * width_;
     const Strip strip = {origin_,
@@ -93,7 +95,7 @@ float Terrain::HighestIn(float x0, float y0, float x1, float y1) const {
 }
 
 // Lambert's law on the surface's slopes, and shadows from everything between a spot and the sun.
-void Terrain::Light(const Scene& scene, int threads) {
+void Terrain::Light(const Scene& scene, int threads, const std::function<void()>& go_on) {
   const Eigen::Vector3f sun = scene.sun.direction.cast<float>();
   const float sun_slope = sun.z() / std::sqrt(sun.x() * sun.x() + sun.y() * sun.y());
   const float step_x = sun.x() / std::sqrt(sun.x() * sun.x() + sun.y() * sun.y());
@@ -119,11 +121,13 @@ void Terrain::Light(const Scene& scene, int threads) {
   };
   std::vector<std::uint8_t> lit(colours_.size(), 255);
   ForEachInParallel(height_, threads, [&](int y) {
+    go_on();
     for (int x = 0; x < width_; ++x) {
       lit[static_cast<std::size_t>(y) * width_ + x] = in_sun(x, y) > 0 ? 255 : 0;
     }
   });
   ForEachInParallel(height_, threads, [&](int y) {
+    go_on();
     for (int x = 0; x < width_; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * width_ + x;
       // The sun is half a degree wide and the air scatters: shadows have soft edges.

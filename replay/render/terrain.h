@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "replay/render/scene.h"
@@ -23,8 +24,10 @@ class Terrain {
   // Side of the blocks whose greatest heights are known, texels.
   static constexpr int kBlock = 8;
 
+  // From `low` to `high` of the map. `go_on`, where there is one, is called before each strip or
+  // row from the thread that works on it; what it throws ends the work and comes out here.
   Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-          double texel_m, int threads);
+          double texel_m, int threads, const std::function<void()>& go_on = {});
 
   double texel_m() const { return texel_m_; }
   const Eigen::Vector2d& origin() const { return origin_; }
@@ -46,9 +49,9 @@ class Terrain {
   float SunAt(const Eigen::Vector2d& spot) const;
 
  private:
-  void Paint(const Scene& scene, int threads);
+  void Paint(const Scene& scene, int threads, const std::function<void()>& go_on);
   void FindHighest();
-  void Light(const Scene& scene, int threads);
+  void Light(const Scene& scene, int threads, const std::function<void()>& go_on);
 
   Eigen::Vector2d origin_;
   double texel_m_;

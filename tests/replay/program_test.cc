@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -189,16 +191,44 @@ TEST(Program, WhatIsWrongIsSaidBeforeTheWork) {
   EXPECT_EQ(Content(out + "2"), "a file\n");
 }
 
-TEST(Program, AnInterruptLeavesNothingBehind) {
-  const ScratchFolder folder;
-  Process program({WINDHOVER_REPLAY, "render", "--frames", "5000", "--size", "320x240", "--out",
-                   folder / "flight"});
-  // The first frames lie in the hidden neighbour by the time the progress is told.
-  while (program.ErrorText().find("painting") == std::string::npos) std::this_thread::yield();
+// Whether there is a picture anywhere below; asked while files come and go.
+bool HoldsPicture(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (std::filesystem::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() == ".png") return true;
+  }
+  return false;
+}
+
+// Interrupts a rendering of `frames` frames once `reached` says so, within a minute.
+template <typename Reached>
+std::string InterruptRendering(const ScratchFolder& folder, int frames, Reached&& reached) {
+  Process program({WINDHOVER_REPLAY, "render", "--frames", std::to_string(frames), "--size",
+                   "320x240", "--out", folder / "flight"});
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!reached(program) && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
+  EXPECT_TRUE(reached(program)) << program.ErrorText();
   program.Signal(SIGINT);
   EXPECT_EQ(program.Wait(), 130);
-  EXPECT_THAT(program.ErrorText(), HasSubstr("interrupted"));
-  EXPECT_TRUE(folder.Names().empty());
+  return program.ErrorText();
+}
+
+TEST(Program, AnInterruptLeavesNoFramesBehind) {
+  const ScratchFolder folder;
+  const std::string text =
+      InterruptRendering(folder, 300, [&](const Process&) { return HoldsPicture(folder.path()); });
+  EXPECT_THAT(text, HasSubstr("interrupted; nothing half-written is left"));
+  EXPECT_THAT(folder.Names(), testing::IsEmpty());
+}
+
+TEST(Program, AnInterruptEndsThePaintingOfTheGround) {
+  const ScratchFolder folder;
+  const std::string text = InterruptRendering(folder, 5000, [](const Process& program) {
+    return program.ErrorText().find("painting") != std::string::npos;
+  });
+  EXPECT_THAT(text, AllOf(HasSubstr("nothing half-written is left"), Not(HasSubstr("rendering"))));
+  EXPECT_THAT(folder.Names(), testing::IsEmpty());
 }
 
 }  // namespace

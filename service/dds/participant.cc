@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "service/dds/log.h"
 
@@ -117,12 +118,14 @@ class Participant::Domain {
 
 Participant::Participant(int domain) {
   const std::lock_guard lock(DomainMutex());
-  domain_ = Domain::Get(domain);
+  // Where this throws, it goes under the lock, too.
+  std::shared_ptr<Domain> configured = Domain::Get(domain);
   const CapturedLog log;
   const dds_entity_t handle =
       dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
   if (handle < 0) Refuse(domain, handle, log.text());
   participant_ = Entity(handle, "dds_create_participant");
+  domain_ = std::move(configured);
 }
 
 Participant::~Participant() {

@@ -123,7 +123,7 @@ void PublishElement::Close() {
 
 void PublishElement::End() {
   if (publisher_ != nullptr && !publisher_->End()) {
-    GST_WARNING_OBJECT(host(), "some subscribers have not acknowledged the whole stream");
+    GST_WARNING_OBJECT(host(), "some subscribers may not have got the whole stream, or not its end");
   }
 }
 

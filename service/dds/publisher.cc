@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "service/dds/conversion.h"
 #include "service/dds/handles.h"
@@ -27,6 +30,20 @@ struct Matches {
   Publisher::SubscribersChanged changed;
 };
 
+// Whether the partitions of `qos` include this one by name.
+bool HasPartition(const dds_qos_t* qos, const std::string& partition) {
+  std::uint32_t count = 0;
+  char** names = nullptr;
+  dds_qget_partition(qos, &count, &names);
+  bool found = count == 0 && partition.empty();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    found = found || partition == names[i];
+    dds_free(names[i]);
+  }
+  dds_free(names);
+  return found;
+}
+
 // One topic and its writer. `subscribers` is the topic's number in `matches`.
 class TopicWriter {
  public:
@@ -45,13 +62,27 @@ class TopicWriter {
 
   bool Write(const void* message) { return Report(dds_write(writer_.get(), message), "dds_write"); }
 
-  void Dispose(const void* message) {
-    Report(dds_dispose(writer_.get(), message), "dds_dispose");
-    Report(dds_unregister_instance(writer_.get(), message), "dds_unregister_instance");
+  bool Dispose(const void* message) {
+    return Report(dds_dispose(writer_.get(), message), "dds_dispose") &&
+           Report(dds_unregister_instance(writer_.get(), message), "dds_unregister_instance");
   }
 
   bool WaitForAcknowledgement(dds_duration_t longest) {
     return dds_wait_for_acks(writer_.get(), longest) == DDS_RETCODE_OK;
+  }
+
+  int SubscribersIn(const std::string& partition) const {
+    std::vector<dds_instance_handle_t> readers(static_cast<std::size_t>(subscribers_.load()));
+    if (dds_get_matched_subscriptions(writer_.get(), readers.data(), readers.size()) < 0) return 0;
+    return static_cast<int>(std::count_if(readers.begin(), readers.end(), [&](auto reader) {
+      // Null where it has gone since.
+      dds_builtintopic_endpoint_t* endpoint =
+          dds_get_matched_subscription_data(writer_.get(), reader);
+      if (endpoint == nullptr) return false;
+      const bool found = HasPartition(endpoint->qos, partition);
+      dds_builtintopic_free_endpoint(endpoint);
+      return found;
+    }));
   }
 
  private:
@@ -126,13 +157,25 @@ struct Publisher::State {
                    DetectionsQos(options).get(), matches, matches.detections) {}
 
   bool Done(bool written, Count& count) {
-    ended = false;
+    ended.reset();
     ++(written ? count : failed);
     return written;
   }
 
+  // After the first failure the rest would most likely wait in vain, too.
+  bool End() {
+    if (!homography.Dispose(homography_message.data()) ||
+        !detections.Dispose(detections_message.data())) {
+      return false;
+    }
+    const dds_time_t until = dds_time() + max_blocking;
+    return homography.WaitForAcknowledgement(max_blocking) &&
+           detections.WaitForAcknowledgement(std::max<dds_duration_t>(until - dds_time(), 0));
+  }
+
   dds_duration_t max_blocking;
-  bool ended = false;
+  // What End() has returned; nothing while the stream goes on.
+  std::optional<bool> ended;
   Count homographies = 0;
   Count samples_of_detections = 0;
   Count boxes = 0;
@@ -172,15 +215,8 @@ bool Publisher::Publish(std::uint64_t frame_number, int width, int height, std::
 }
 
 bool Publisher::End() {
-  if (state_->ended) return true;
-  state_->ended = true;
-  state_->homography.Dispose(state_->homography_message.data());
-  state_->detections.Dispose(state_->detections_message.data());
-  const dds_time_t until = dds_time() + state_->max_blocking;
-  const bool homographies = state_->homography.WaitForAcknowledgement(state_->max_blocking);
-  const bool detections =
-      state_->detections.WaitForAcknowledgement(std::max<dds_duration_t>(until - dds_time(), 0));
-  return homographies && detections;
+  if (!state_->ended) state_->ended = state_->End();
+  return *state_->ended;
 }
 
 Publisher::Counters Publisher::counters() const {
@@ -194,5 +230,10 @@ Publisher::Counters Publisher::counters() const {
 }
 
 int Publisher::subscribers() const { return state_->matches.both(); }
+
+int Publisher::subscribers(const std::string& partition) const {
+  return std::min(state_->homography.SubscribersIn(partition),
+                  state_->detections.SubscribersIn(partition));
+}
 
 }  // namespace windhover

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "service/dds/dds_error.h"  // IWYU pragma: export
@@ -53,13 +54,17 @@ class Publisher {
                const std::vector<Detection>& detections);
 
   // The stream is over: disposes its instances, so that subscribers see the end after the last
-  // sample, and waits up to max_blocking_ms until reliable subscribers have acknowledged
-  // everything. False where they have not. Publishing again starts the stream anew.
+  // sample, and waits until reliable subscribers have acknowledged everything. False where the end
+  // could not be written or they have not. Each step waits up to max_blocking_ms for reliable
+  // subscribers that lag behind; the first that waits in vain is the last. Called again it does
+  // nothing and returns the same. Publishing again starts the stream anew.
   bool End();
 
   Counters counters() const;
   // Subscribers matched: the smaller of the two topics' numbers.
   int subscribers() const;
+  // Those of them that name this partition among theirs; empty is the default partition.
+  int subscribers(const std::string& partition) const;
 
  private:
   struct State;

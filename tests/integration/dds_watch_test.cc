@@ -247,6 +247,22 @@ TEST_F(WatchTest, ClosedOutputIsACleanEnd) {
   EXPECT_THAT(watch_->ErrorText(), testing::Not(HasSubstr("windhover:")));
 }
 
+// A subscriber that stands still holds the end up for little longer than one wait, and it shows.
+TEST_F(WatchTest, AnEndThatCannotBeToldIsNotTold) {
+  options_.max_blocking_ms = 500;
+  Connect({"--json"});
+  watch_->Signal(SIGSTOP);
+  const std::vector<Detection> most(Publisher::kMaxDetections, SampleDetection(1));
+  while (publisher_->Publish(0, 640, 480, 0, most)) {
+  }
+  while (publisher_->Publish(SampleRegistration(0, true), 640, 480, 0)) {
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(publisher_->End());
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(1500));
+  EXPECT_FALSE(publisher_->End()) << "it has not been told since";
+}
+
 TEST_F(WatchTest, InterruptBeforeTheEndSaysSo) {
   Connect({"--json", "--until-end"});
   PublishFrame(0);

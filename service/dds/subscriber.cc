@@ -18,6 +18,7 @@ namespace {
 
 using EndReason = Subscriber::EndReason;
 
+// Samples of one topic that one call of Poll hands over at most.
 constexpr int kBatch = 16;
 
 // Samples lent by the reader's cache until this goes out of scope.
@@ -53,12 +54,15 @@ class Endings {
     auto known = streams_.find(std::string_view(stream));
     if (known == streams_.end()) known = streams_.emplace(stream, Instance{}).first;
     Instance& instance = known->second;
-    // The stream ended and started again between two samples.
-    const std::uint32_t ends = info.disposed_generation_count + info.no_writers_generation_count;
-    if (info.instance_handle == instance.handle && ends > instance.ends) {
-      end(known->first, EndReason::kEnded);
+    // The stream was over and started again between two samples. Each end leaves it without
+    // writers; where it was not disposed as often, one of them was lost.
+    const std::uint32_t disposed = info.disposed_generation_count - instance.times_disposed;
+    const std::uint32_t abandoned = info.no_writers_generation_count - instance.times_abandoned;
+    if (info.instance_handle == instance.handle && (disposed > 0 || abandoned > 0)) {
+      end(known->first, abandoned > disposed ? EndReason::kLost : EndReason::kEnded);
     }
-    instance = {info.instance_handle, ends, info.instance_state};
+    instance = {info.instance_handle, info.disposed_generation_count,
+                info.no_writers_generation_count, info.instance_state};
   }
 
   // No sample is left.
@@ -77,7 +81,8 @@ class Endings {
  private:
   struct Instance {
     dds_instance_handle_t handle = DDS_HANDLE_NIL;
-    std::uint32_t ends = 0;
+    std::uint32_t times_disposed = 0;
+    std::uint32_t times_abandoned = 0;
     dds_instance_state_t state = DDS_IST_ALIVE;
   };
   std::map<std::string, Instance, std::less<>> streams_;
@@ -116,22 +121,22 @@ class TopicReader {
     return static_cast<int>(matched.current_count);
   }
 
-  // Takes all samples: calls stream_of(data) for each, then sample(data, info) for each that has
-  // valid data and belongs to the stream.
+  // Takes up to kBatch samples: calls stream_of(data) for each, then sample(data, info) for each
+  // that has valid data and belongs to the stream. True where there may be more to take, or an end
+  // to report.
   template <typename StreamOf, typename OnSample>
-  void TakeAll(const std::string& stream, StreamOf stream_of, OnSample sample,
-               const Endings::End& end) {
-    while (true) {
-      const Loan loan(reader_.get());
-      for (int i = 0; i < loan.count(); ++i) {
-        const char* name = stream_of(loan.data(i));
-        if (!stream.empty() && stream != name) continue;
-        endings_.See(name, loan.info(i), end);
-        if (loan.info(i).valid_data) sample(loan.data(i), loan.info(i));
-      }
-      if (loan.count() < kBatch) break;
+  bool Take(const std::string& stream, StreamOf stream_of, OnSample sample,
+            const Endings::End& end) {
+    const Loan loan(reader_.get());
+    for (int i = 0; i < loan.count(); ++i) {
+      const char* name = stream_of(loan.data(i));
+      if (!stream.empty() && stream != name) continue;
+      endings_.See(name, loan.info(i), end);
+      if (loan.info(i).valid_data) sample(loan.data(i), loan.info(i));
     }
+    if (loan.count() == kBatch) return true;
     endings_.Report(end);
+    return false;
   }
 
  private:
@@ -177,9 +182,9 @@ struct Subscriber::State {
 
   // `sample` is the object that is used again for each sample.
   template <typename Sample, typename StreamOf>
-  void Take(TopicReader& reader, Topic topic, StreamOf stream_of, Sample& sample,
+  bool Take(TopicReader& reader, Topic topic, StreamOf stream_of, Sample& sample,
             const std::function<void(const Sample&)>& handler, const Handlers& handlers) {
-    reader.TakeAll(
+    return reader.Take(
         stream, stream_of,
         [&](const void* data, const dds_sample_info_t& info) {
           if (!handler) return;
@@ -194,6 +199,7 @@ struct Subscriber::State {
 
   std::string stream;
   int publishers = 0;
+  bool more = false;  // may be there, so the next Poll must not wait
   HomographySample homography_sample;
   DetectionsSample detections_sample;
   Participant participant;
@@ -209,22 +215,25 @@ Subscriber::Subscriber(const SubscribeOptions& options)
 Subscriber::~Subscriber() = default;
 
 bool Subscriber::Poll(std::chrono::nanoseconds longest, const Handlers& handlers) {
-  const dds_duration_t wait = longest.count() < 0 ? DDS_INFINITY : longest.count();
+  State& state = *state_;
+  const bool more = state.more;
+  const dds_duration_t wait = more ? 0 : longest.count() < 0 ? DDS_INFINITY : longest.count();
   const int triggered =
-      CheckDds(dds_waitset_wait(state_->waitset.get(), nullptr, 0, wait), "dds_waitset_wait");
+      CheckDds(dds_waitset_wait(state.waitset.get(), nullptr, 0, wait), "dds_waitset_wait");
   bool interrupted = false;
-  CheckDds(dds_take_guardcondition(state_->interrupt.get(), &interrupted),
-           "dds_take_guardcondition");
-  if (interrupted || triggered == 0) return false;
-  state_->TellPublishers(handlers);
-  if (state_->homographies) {
-    state_->Take(*state_->homographies, Topic::kHomography, HomographyStream,
-                 state_->homography_sample, handlers.homography, handlers);
+  CheckDds(dds_take_guardcondition(state.interrupt.get(), &interrupted), "dds_take_guardcondition");
+  if (interrupted || (triggered == 0 && !more)) return false;
+  state.TellPublishers(handlers);
+  bool still_more = false;
+  if (state.homographies) {
+    still_more = state.Take(*state.homographies, Topic::kHomography, HomographyStream,
+                            state.homography_sample, handlers.homography, handlers);
   }
-  if (state_->detections) {
-    state_->Take(*state_->detections, Topic::kDetections, DetectionsStream,
-                 state_->detections_sample, handlers.detections, handlers);
+  if (state.detections) {
+    still_more |= state.Take(*state.detections, Topic::kDetections, DetectionsStream,
+                             state.detections_sample, handlers.detections, handlers);
   }
+  state.more = still_more;
   return true;
 }
 

@@ -55,7 +55,8 @@ class Subscriber {
   ~Subscriber();
 
   // Waits up to `longest` (forever where it is negative) until something happens, and hands over
-  // all that is there. False when it waited in vain or was interrupted.
+  // what is there, but at most 16 samples of each topic: the rest comes with the next calls. False
+  // when it waited in vain or was interrupted.
   bool Poll(std::chrono::nanoseconds longest, const Handlers& handlers);
 
   // Ends the wait of the present call of Poll, or that of the next.

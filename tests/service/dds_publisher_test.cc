@@ -10,6 +10,9 @@
 #include <thread>
 #include <vector>
 
+#include "service/dds/conversion.h"
+#include "service/dds/handles.h"
+#include "service/dds/participant.h"
 #include "service/dds/publisher.h"
 #include "service/dds/subscriber.h"
 #include "tests/service/dds_samples.h"
@@ -278,6 +281,90 @@ TEST_F(DdsTest, InterruptEndsAWait) {
   EXPECT_FALSE(subscriber_->Poll(std::chrono::nanoseconds(-1), handlers_));
   interrupt.join();
   EXPECT_FALSE(subscriber_->Poll(std::chrono::nanoseconds(0), handlers_));
+}
+
+// However much there is, one call of Poll hands over little of each topic, so that neither waits
+// for the other and an interrupt holds soon.
+TEST_F(DdsTest, InterruptEndsALongHandover) {
+  Connect();
+  constexpr int kFrames = 200;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    ASSERT_TRUE(publisher_->Publish(SampleRegistration(frame, true), 8, 8, frame));
+    ASSERT_TRUE(publisher_->Publish(frame, 8, 8, frame, {}));
+  }
+  ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return !homographies_.empty(); }));
+  EXPECT_FALSE(detections_.empty());
+  EXPECT_LT(homographies_.size(), kFrames / 2);
+  EXPECT_LT(detections_.size(), kFrames / 2);
+  subscriber_->Interrupt();
+  EXPECT_FALSE(subscriber_->Poll(kPatience, handlers_));
+  EXPECT_LT(homographies_.size(), kFrames / 2);
+  // What is left comes with the next calls.
+  EXPECT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return homographies_.size() == kFrames; }));
+}
+
+// An end is told also where its sample is the last of a whole handover.
+TEST_F(DdsTest, TellsTheEndAfterAnyNumberOfSamples) {
+  Connect();
+  std::size_t ended = 0;
+  for (int frames = 1; frames <= 64; ++frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      ASSERT_TRUE(publisher_->Publish(frame, 8, 8, frame, {}));
+    }
+    ASSERT_TRUE(publisher_->End());
+    ended += 1;
+    ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] {
+      return static_cast<std::size_t>(
+                 std::count(ends_.begin(), ends_.end(), "alpha detections ended")) == ended;
+    })) << frames;
+  }
+}
+
+// The subscriber looks only when the publisher is back again.
+TEST_F(DdsTest, APublisherThatCameBackWasLost) {
+  subscriber_.emplace(subscribe_);
+  handlers_.end = [this](const std::string& stream, Topic, Subscriber::EndReason reason) {
+    ends_.push_back(stream + (reason == Subscriber::EndReason::kEnded ? " ended" : " lost"));
+  };
+  handlers_.detections = [this](const DetectionsSample& sample) { detections_.push_back(sample); };
+  const Participant participant(0);
+  const Entity topic(dds_create_topic(participant.get(), DetectionsDescriptor(), kDetectionsTopic,
+                                      nullptr, nullptr),
+                     "dds_create_topic");
+  const Qos qos = MakeQos(true, 1000, 0, partition_);
+  DetectionsMessage message("alpha");
+  int publishers = 0;
+  handlers_.publishers_changed = [&](int now) { publishers = now; };
+  for (int life = 0; life < 2; ++life) {
+    const Entity writer(dds_create_writer(participant.get(), topic.get(), qos.get(), nullptr),
+                        "dds_create_writer");
+    message.Set(static_cast<std::uint64_t>(life), 8, 8, 0, {});
+    ASSERT_EQ(dds_write(writer.get(), message.data()), DDS_RETCODE_OK);
+  }
+  ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return ends_.size() == 2; }));
+  EXPECT_EQ(detections_.size(), 2);
+  EXPECT_THAT(ends_, ElementsAre("alpha lost", "alpha lost"));
+}
+
+TEST_F(DdsTest, CountsSubscribersOfOnePartition) {
+  publish_.partition = partition_ + "," + partition_ + "-own";
+  Connect();
+  EXPECT_EQ(publisher_->subscribers(), 1);
+  EXPECT_EQ(publisher_->subscribers(partition_), 1);
+  EXPECT_EQ(publisher_->subscribers(partition_ + "-own"), 0);
+  EXPECT_EQ(publisher_->subscribers(""), 0);
+  // A reader of one topic alone is none.
+  SubscribeOptions half = subscribe_;
+  half.partition += "-own";
+  half.homographies = false;
+  Subscriber first(half);
+  SubscribeOptions whole = subscribe_;
+  whole.partition = partition_ + "-elsewhere," + partition_ + "-own";
+  Subscriber second(whole);
+  ASSERT_TRUE(matches_.WaitFor(2));
+  EXPECT_EQ(publisher_->subscribers(partition_), 1);
+  EXPECT_EQ(publisher_->subscribers(partition_ + "-own"), 1);
+  EXPECT_EQ(publisher_->subscribers(partition_ + "-elsewhere"), 1);
 }
 
 TEST_F(DdsTest, OtherPartitionsAreNotSeen) {

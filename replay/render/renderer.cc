@@ -137,13 +137,16 @@ std::vector<DrawnVehicle> Renderer::VehiclesAt(double time) const {
   return drawn;
 }
 
-cv::Mat Renderer::Frame(int frame) const {
+cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
   std::array<Camera, kInstants> cameras;
   std::array<std::vector<DrawnVehicle>, kInstants> vehicles;
   for (int i = 0; i < kInstants; ++i) {
     const double time = frame + plan_.sensor.exposure_share * ((i + 0.5) / kInstants - 0.5);
     cameras[i] = camera_path_.At(time);
     vehicles[i] = VehiclesAt(time);
+    for (DrawnVehicle& vehicle : vehicles[i]) {
+      if (vehicle.id == without) vehicle.faces.clear();
+    }
   }
   cv::Mat light(plan_.height, plan_.width, CV_32FC3);
   for (int first = 0; first < plan_.height; first += kBandRows) {

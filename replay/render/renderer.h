@@ -47,8 +47,9 @@ class Renderer {
   Renderer(const FlightPlan& plan, int threads, const std::function<void()>& go_on = {});
 
   const FlightPlan& plan() const { return plan_; }
-  // Thread-safe. `frame` from 0 to plan().frames - 1; CV_8UC3, blue first.
-  cv::Mat Frame(int frame) const;
+  // Thread-safe. `frame` from 0 to plan().frames - 1; CV_8UC3, blue first. The vehicle `without` is
+  // left out, but not its shadow: for holding boxes against pictures.
+  cv::Mat Frame(int frame, std::int64_t without = 0) const;
   FrameTruth Truth(int frame) const;
   // FrameTruth::first_from_frame alone, which takes no time.
   Eigen::Matrix3d TrueHomography(int frame) const;

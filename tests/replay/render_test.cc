@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <future>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <vector>
 
 #include "replay/render/fill.h"
 #include "replay/render/portable_math.h"
@@ -93,6 +97,20 @@ TEST(Camera, ProjectInvertsTheRays) {
   }
 }
 
+void ExpectSameBoxes(const std::vector<LabelledBox>& a, const std::vector<LabelledBox>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].frame, b[i].frame);
+    EXPECT_EQ(a[i].id, b[i].id);
+    EXPECT_EQ(a[i].box.x, b[i].box.x);
+    EXPECT_EQ(a[i].box.y, b[i].box.y);
+    EXPECT_EQ(a[i].box.width, b[i].box.width);
+    EXPECT_EQ(a[i].box.height, b[i].box.height);
+    EXPECT_EQ(a[i].score, b[i].score);
+    EXPECT_EQ(a[i].visible, b[i].visible);
+  }
+}
+
 TEST(Renderer, TheSamePlanGivesTheSameBitsOnAnyThreads) {
   FlightPlan plan = SmallPlan();
   plan.width = 160;
@@ -110,7 +128,8 @@ TEST(Renderer, TheSamePlanGivesTheSameBitsOnAnyThreads) {
     const FrameTruth a = one.Truth(i);
     const FrameTruth b = many.Truth(i);
     EXPECT_EQ(a.first_from_frame, b.first_from_frame);
-    EXPECT_EQ(a.movers.size(), b.movers.size());
+    ExpectSameBoxes(a.movers, b.movers);
+    ExpectSameBoxes(a.decoys, b.decoys);
   }
   plan.seed += 1;
   const Renderer other(plan, 2);
@@ -156,27 +175,74 @@ TEST(Renderer, TheTrueHomographyIsTheBestShift) {
   EXPECT_NEAR(lowest(misfit(0, -0.5), middle, misfit(0, 0.5)), 0, 0.05);
 }
 
-TEST(Renderer, BoxesSitOnMoversAndNotOnDecoys) {
-  const Renderer& flight = SmallFlight();
-  const cv::Mat earlier = Luma(flight.Frame(10));
-  const cv::Mat warped = Warped(flight, 10, 20);
-  const FrameTruth truth = flight.Truth(10);
+// The least rectangle around the pixels where the pictures differ by more than a rounding.
+cv::Rect Difference(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference;
+  cv::absdiff(a, b, difference);
+  cv::Mat differs = difference.reshape(1, a.rows * a.cols) > 2;
+  cv::reduce(differs, differs, 1, cv::REDUCE_MAX);
+  return cv::boundingRect(differs.reshape(1, a.rows));
+}
+
+TEST(Renderer, BoxesAreTightAroundWhatTheVehicleChanges) {
+  // What a perfect camera sees with and without the vehicle: no noise, no blur of any kind.
+  FlightPlan plan = SmallPlan();
+  plan.sensor = {
+      .exposure_share = 0, .psf_sigma_px = 0, .read_sigma = 0, .shot_gain = 0, .chroma_sigma = 0};
+  const Renderer flight(plan, 2);
+  constexpr int kFrame = 10;
+  const cv::Mat all = flight.Frame(kFrame);
+  const FrameTruth truth = flight.Truth(kFrame);
   ASSERT_GE(truth.movers.size(), 3U);
   ASSERT_GE(truth.decoys.size(), 3U);
-  const auto change = [&](const LabelledBox& box) {
-    const cv::Rect area(static_cast<int>(box.box.x), static_cast<int>(box.box.y),
-                        static_cast<int>(box.box.width), static_cast<int>(box.box.height));
-    cv::Mat difference;
-    cv::absdiff(earlier(area), warped(area), difference);
-    cv::Mat outside = warped(area) < -1;
-    difference.setTo(0, outside);
-    return cv::mean(difference)[0];
+  for (const std::vector<LabelledBox>* boxes : {&truth.movers, &truth.decoys}) {
+    for (const LabelledBox& box : *boxes) {
+      const cv::Rect seen = Difference(all, flight.Frame(kFrame, box.id));
+      EXPECT_NEAR(box.box.x, seen.x, 1) << "left of " << box.id;
+      EXPECT_NEAR(box.box.y, seen.y, 1) << "top of " << box.id;
+      EXPECT_NEAR(box.box.x + box.box.width, seen.x + seen.width, 1) << "right of " << box.id;
+      EXPECT_NEAR(box.box.y + box.box.height, seen.y + seen.height, 1) << "bottom of " << box.id;
+    }
+  }
+}
+
+TEST(Renderer, MoversTravelOverTheGroundAndDecoysDoNot) {
+  const Renderer& flight = SmallFlight();
+  constexpr int kFrame = 10;
+  constexpr int kHalf = kMoverWindowFrames / 2;
+  // Where the middles of the boxes lie in the picture of frame 0; a roof moves against the ground
+  // by its parallax, and boxes are of whole pixels.
+  const auto middles = [&flight](int frame) {
+    const FrameTruth truth = flight.Truth(frame);
+    std::map<std::int64_t, Eigen::Vector2d> found;
+    for (const std::vector<LabelledBox>* boxes : {&truth.movers, &truth.decoys}) {
+      for (const LabelledBox& box : *boxes) {
+        if (box.visible < 0.95) continue;
+        const Eigen::Vector2d middle(box.box.x + (box.box.width - 1) / 2,
+                                     box.box.y + (box.box.height - 1) / 2);
+        found[box.id] = (truth.first_from_frame * middle.homogeneous()).hnormalized();
+      }
+    }
+    return found;
   };
-  double moving = 0;
-  for (const LabelledBox& box : truth.movers) moving += change(box) / truth.movers.size();
-  double standing = 0;
-  for (const LabelledBox& box : truth.decoys) standing += change(box) / truth.decoys.size();
-  EXPECT_GT(moving, 2 * standing);
+  const auto before = middles(kFrame - kHalf);
+  const auto after = middles(kFrame + kHalf);
+  const auto ways = [&](const std::vector<LabelledBox>& boxes) {
+    std::vector<double> found;
+    for (const LabelledBox& box : boxes) {
+      if (before.count(box.id) == 0 || after.count(box.id) == 0) continue;
+      found.push_back((after.at(box.id) - before.at(box.id)).norm());
+    }
+    return found;
+  };
+  constexpr double kTolerancePx = 1;
+  const FrameTruth truth = flight.Truth(kFrame);
+  const std::vector<double> moving = ways(truth.movers);
+  const std::vector<double> standing = ways(truth.decoys);
+  ASSERT_GE(moving.size(), 3U);
+  ASSERT_GE(standing.size(), 3U);
+  EXPECT_THAT(moving, testing::Each(testing::Gt(kMoverTravelPx - kTolerancePx)));
+  EXPECT_THAT(standing, testing::Each(testing::Lt(kMoverTravelPx + kTolerancePx)));
 }
 
 TEST(Renderer, TruthKeepsItsRules) {

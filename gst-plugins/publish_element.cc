@@ -62,6 +62,17 @@ void PublishElement::InstallProperties(GObjectClass* klass) {
       g_param_spec_int("subscribers", "Subscribers",
                        "Subscribers that are matched to both topics now", 0, G_MAXINT, 0,
                        static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+  g_signal_new_class_handler("subscribers-in", G_TYPE_FROM_CLASS(klass),
+                             static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION),
+                             G_CALLBACK(&PublishElement::SubscribersIn), nullptr, nullptr, nullptr,
+                             G_TYPE_INT, 1, G_TYPE_STRING);
+}
+
+gint PublishElement::SubscribersIn(GstElement* object, const gchar* partition) {
+  auto& element = static_cast<PublishElement&>(*reinterpret_cast<ElementHost*>(object)->element);
+  const std::scoped_lock lock(element.publisher_mutex_);
+  if (element.publisher_ == nullptr) return 0;
+  return element.publisher_->subscribers(partition != nullptr ? partition : "");
 }
 
 bool PublishElement::SetProperty(guint id, const GValue* value) {
@@ -123,7 +134,8 @@ void PublishElement::Close() {
 
 void PublishElement::End() {
   if (publisher_ != nullptr && !publisher_->End()) {
-    GST_WARNING_OBJECT(host(), "some subscribers may not have got the whole stream, or not its end");
+    GST_WARNING_OBJECT(host(),
+                       "some subscribers may not have got the whole stream, or not its end");
   }
 }
 

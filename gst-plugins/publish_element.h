@@ -16,10 +16,12 @@ namespace windhover {
 // end of stream, or when the element leaves PAUSED.
 //
 // Each time the number of subscribers changes it posts the element message "windhover-subscribers"
-// with the field subscribers (int).
+// with the field subscribers (int). The action signal "subscribers-in" takes a partition's name and
+// returns how many of them name that partition (int).
 class PublishElement : public ElementWithOptions<PublishOptions> {
  public:
   static const ElementText kText;
+  // And the action signal.
   static void InstallProperties(GObjectClass* klass);
 
   using ElementWithOptions::ElementWithOptions;
@@ -35,6 +37,7 @@ class PublishElement : public ElementWithOptions<PublishOptions> {
   bool GetProperty(guint id, GValue* value) override;
 
  private:
+  static gint SubscribersIn(GstElement* object, const gchar* partition);
   void MakePublisher();
   void WarnOfFailures();
 

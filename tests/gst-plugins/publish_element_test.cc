@@ -120,6 +120,27 @@ TEST(PublishElement, OptionsMayChangeInReady) {
   }
 }
 
+TEST(PublishElement, CountsTheSubscribersOfAPartition) {
+  const ElementPtr publish = MakeElement("whpublish");
+  const auto subscribers_in = [&](const std::string& partition) {
+    int value = -1;
+    g_signal_emit_by_name(publish.get(), "subscribers-in", partition.c_str(), &value);
+    return value;
+  };
+  EXPECT_EQ(subscribers_in(StreamName()), 0);
+  g_object_set(publish.get(), "partition", ("," + StreamName()).c_str(), nullptr);
+  ASSERT_EQ(gst_element_set_state(publish.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  EXPECT_EQ(subscribers_in(StreamName()), 0);
+  SubscribeOptions options;
+  options.partition = StreamName();
+  Subscriber subscriber(options);
+  while (subscribers_in(StreamName()) == 0) {
+    ASSERT_TRUE(subscriber.Poll(std::chrono::seconds(10), {}));
+  }
+  EXPECT_EQ(subscribers_in(StreamName()), 1);
+  EXPECT_EQ(subscribers_in(StreamName() + "-other"), 0);
+}
+
 // Without a publisher there must be no way to frames.
 TEST(PublishElement, BadOptionInReadyIsAnErrorEachTime) {
   const ElementPtr publish = MakeElement("whpublish");

@@ -2,16 +2,20 @@
 #pragma once
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
+
+#include "service/app/random_name.h"
 
 namespace windhover {
 
 // A result that takes its name only when it is complete; until then, and for good where it never
-// is, nothing lies under that name.
+// is, nothing of it lies under that name. It is written under a name of its own, so several may be
+// on the way to one name; the last to be complete stays.
 class PendingFile {
  public:
   explicit PendingFile(std::filesystem::path path)
-      : path_(std::move(path)), temporary_(path_.string() + ".part") {}
+      : path_(std::move(path)), temporary_(path_.string() + "." + RandomName() + ".part") {}
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
   ~PendingFile() {

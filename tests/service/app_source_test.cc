@@ -2,12 +2,16 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "service/app/option_settings.h"
 #include "service/app/pending_file.h"
 #include "service/app/source.h"
 #include "service/options/option.h"
+#include "service/options/options.h"
+#include "service/options/overlay_options.h"
+#include "service/options/publish_options.h"
 #include "tests/service/app_process.h"
 
 namespace windhover {
@@ -125,11 +129,20 @@ TEST(OptionSettingTest, RefusesTheRest) {
 }
 
 TEST(OptionSettingTest, DescribesEveryOption) {
-  const std::string text = DescribeOptions();
-  for (const char* line :
-       {"  threshold=", "  reference=anchor", "  stream=default", "  max-speed=", "  boxes=true"}) {
-    EXPECT_THAT(text, HasSubstr(line));
-  }
+  const std::string text = "\n" + DescribeOptions();
+  const auto expect_all_of = [&](const auto& options) {
+    ForEachField<std::decay_t<decltype(options)>>([&](const auto& field) {
+      const std::string name(field.name);
+      EXPECT_THAT(text, HasSubstr("\n  " + name + "=" + OptionText(options, name) + "  ("));
+      EXPECT_THAT(text, HasSubstr("\n      " + std::string(field.meaning) + "\n"));
+    });
+  };
+  expect_all_of(DeviceOptions());
+  expect_all_of(RegistrationOptions());
+  expect_all_of(BackgroundOptions());
+  expect_all_of(MotionOptions());
+  expect_all_of(PublishOptions());
+  expect_all_of(OverlayOptions());
 }
 
 TEST(PendingFileTest, LeavesNothingUnlessComplete) {
@@ -137,7 +150,7 @@ TEST(PendingFileTest, LeavesNothingUnlessComplete) {
   {
     PendingFile file(folder / "a");
     std::ofstream(file.temporary()) << "half";
-    EXPECT_THAT(folder.Names(), testing::ElementsAre("a.part"));
+    EXPECT_THAT(folder.Names(), testing::ElementsAre(testing::MatchesRegex("a\\..*\\.part")));
   }
   EXPECT_THAT(folder.Names(), IsEmpty());
   {
@@ -145,6 +158,28 @@ TEST(PendingFileTest, LeavesNothingUnlessComplete) {
     std::ofstream(file.temporary()) << "whole";
     file.Complete();
   }
+  EXPECT_THAT(folder.Names(), testing::ElementsAre("a"));
+}
+
+// As two runs into one folder write them.
+TEST(PendingFileTest, TwoOfOneNameDoNotMeet) {
+  ScratchFolder folder;
+  const auto text = [&] {
+    std::ifstream file(folder / "a");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  PendingFile first(folder / "a");
+  std::ofstream(first.temporary()) << "first";
+  {
+    PendingFile second(folder / "a");
+    std::ofstream(second.temporary()) << "second";
+    PendingFile third(folder / "a");
+    std::ofstream(third.temporary()) << "third";
+    second.Complete();
+  }
+  EXPECT_EQ(text(), "second");
+  first.Complete();
+  EXPECT_EQ(text(), "first");
   EXPECT_THAT(folder.Names(), testing::ElementsAre("a"));
 }
 

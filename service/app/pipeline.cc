@@ -179,9 +179,9 @@ void Pipeline::EndEarly() {
   if (end_early_.exchange(true)) gst_element_send_event(pipeline_.get(), gst_event_new_eos());
 }
 
-int Pipeline::Subscribers() const {
+int Pipeline::Subscribers(const std::string& partition) const {
   int subscribers = 0;
-  g_object_get(publish_, "subscribers", &subscribers, nullptr);
+  g_signal_emit_by_name(publish_, "subscribers-in", partition.c_str(), &subscribers);
   return subscribers;
 }
 

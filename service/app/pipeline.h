@@ -27,7 +27,7 @@ void FindPlugin();
 
 // The main job's pipeline: source ! whregister ! whbackground ! whmotion ! whpublish ! whoverlay
 // and, where there is a path for it, an H.264 file. Frames are counted on the way. Its messages go
-// to the bus; an error names no element of GStreamer where that says nothing to people.
+// to the bus.
 class Pipeline {
  public:
   // Throws std::runtime_error where an element is not installed. `video_path` empty: no video.
@@ -55,8 +55,9 @@ class Pipeline {
   std::int64_t reached_ns() const { return reached_ns_; }
   std::int64_t length_ns() const { return length_ns_; }
 
-  // Subscribers of whpublish, and a counter of it by its property's name. Any thread.
-  int Subscribers() const;
+  // Subscribers of whpublish in a partition, and a counter of it by its property's name. Any
+  // thread.
+  int Subscribers(const std::string& partition) const;
   std::uint64_t Published(const char* property) const;
 
  private:

@@ -4,7 +4,6 @@
 #include <glib-unix.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,11 +16,11 @@
 #include <string_view>
 #include <utility>
 
-#include "gpu-kernels/backend.h"
 #include "service/app/exit_code.h"
 #include "service/app/pending_file.h"
 #include "service/app/pipeline.h"
 #include "service/app/progress.h"
+#include "service/app/random_name.h"
 #include "service/app/run_outcome.h"
 #include "service/app/subscriber_process.h"
 #include "service/dds/log.h"
@@ -105,7 +104,7 @@ class Job {
   const Source& source_;
   std::vector<OptionSetting> settings_;
   // Only our own subscriber reads in this partition, so it sees this publisher and no other.
-  const std::string partition_ = fmt::format("windhover-run-{}", getpid());
+  const std::string partition_ = "windhover-run-" + RandomName();
   PendingFile lines_path_;
   std::optional<PendingFile> video_path_;
   std::ofstream lines_;
@@ -117,10 +116,9 @@ class Job {
 
   Stage stage_ = Stage::kMatching;
   Clock::time_point stage_start_ = Clock::now();
-  int other_subscribers_ = 0;
   bool subscriber_ready_ = false;
   bool subscriber_ended_ = false;
-  std::string device_;
+  std::string device_;  // that the elements compute on, for people
   RunOutcome::Samples published_;
   RunOutcome::Samples received_;
   std::uint64_t failed_ = 0;
@@ -193,7 +191,6 @@ int Job::Run() {
               g_unix_signal_add(SIGTERM, interrupt, this), g_timeout_add(100, tick, this),
               gst_bus_add_watch(pipeline_->bus(), message, this)};
   pipeline_->SetState(GST_STATE_READY);
-  other_subscribers_ = pipeline_->Subscribers();
   StartSubscriber();
   loop_.Run();
   progress_.Clear();
@@ -264,8 +261,7 @@ void Job::OnSubscriberExit(int status) {
 }
 
 void Job::PlayOnceMatched() {
-  if (stage_ != Stage::kMatching || !subscriber_ready_ ||
-      pipeline_->Subscribers() <= other_subscribers_) {
+  if (stage_ != Stage::kMatching || !subscriber_ready_ || pipeline_->Subscribers(partition_) == 0) {
     return;
   }
   stage_ = Stage::kFlowing;
@@ -287,9 +283,11 @@ void Job::EndOfVideo() {
   if (subscriber_ended_) loop_.Quit();
 }
 
+// Before the first frame there is nothing that could come to a clean end, and some sources would
+// not end at all.
 void Job::OnInterrupt() {
   const bool again = std::exchange(interrupted_, true);
-  if (again || stage_ != Stage::kFlowing) {
+  if (again || stage_ != Stage::kFlowing || pipeline_->frames_in() == 0) {
     Fail(source_.name + ": interrupted");
   } else {
     pipeline_->EndEarly();
@@ -333,8 +331,7 @@ RunOutcome Job::Outcome() const {
   outcome.received = received_;
   outcome.failed_samples = failed_;
   outcome.frames_per_second = FramesPerSecond(end_of_video_);
-  outcome.device =
-      device_.empty() ? Backend::Create(Setting("device", ""))->device().Describe() : device_;
+  outcome.device = device_;
   outcome.reached_ns = pipeline_->reached_ns();
   outcome.length_ns = pipeline_->length_ns();
   outcome.missing_bytes = source_.missing_bytes;

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 #include <gst/gst.h>
+#include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -301,6 +303,43 @@ TEST_F(RunTest, InterruptLeavesWholeResults) {
   EXPECT_THAT(Results(), ElementsAre("annotated.mp4", "detections.jsonl"));
   const Outcome again = Run(Out() + "/annotated.mp4", {"--no-video"});
   ExpectSummary(again, std::stoi(counts[1]));
+}
+
+// A camera that takes the call and says nothing.
+TEST_F(RunTest, InterruptBeforeTheFirstFrameEndsAtOnce) {
+  const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(listener, 1), 0);
+  ASSERT_EQ(getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string uri = "rtsp://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/live";
+  Process run(Command(uri));
+  pollfd call{listener, POLLIN, 0};
+  ASSERT_EQ(poll(&call, 1, 60000), 1) << run.ErrorText();
+  const int camera = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+  run.Signal(SIGINT);
+  EXPECT_THAT(run.ReadLines(), IsEmpty());
+  EXPECT_EQ(run.Wait(), 130);
+  EXPECT_THAT(run.ErrorText(), testing::EndsWith("windhover: " + uri + ": interrupted\n"));
+  EXPECT_THAT(Results(), IsEmpty());
+  close(camera);
+  close(listener);
+}
+
+TEST_F(RunTest, RunsIntoOneFolderDoNotMeet) {
+  MakeVideo("flight.avi", 40, 320, 240);
+  Process first(Command(Path("flight.avi")));
+  Process second(Command(Path("flight.avi")));
+  for (Process* run : {&first, &second}) {
+    EXPECT_EQ(run->ReadLines().size(), 1);
+    EXPECT_EQ(run->Wait(), 0) << run->ErrorText();
+  }
+  EXPECT_THAT(Results(), ElementsAre("annotated.mp4", "detections.jsonl"));
+  EXPECT_EQ(Detections().size(), 40);
+  ExpectSummary(Run(Out() + "/annotated.mp4", {"--no-video"}), 40);
 }
 
 TEST(CommandTest, EveryCommandHasHelpAndVersion) {

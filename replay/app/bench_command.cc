@@ -40,7 +40,9 @@ void WriteJson(const std::filesystem::path& file, const SpeedBenchmarkSettings& 
                const SpeedBenchmarkResult& result) {
   nlohmann::ordered_json json;
   json["machine"] = {{"processor", ProcessorName()}, {"cores", Cores()}};
-  json["device"] = result.opencl_device.empty() ? "CPU twin" : result.opencl_device;
+  json["device"] = result.default_device;
+  json["opencl"] = result.opencl_device;
+  json["plugin"] = result.plugin_file;
   json["options"] = {{"sequence", settings.plan.number}, {"seed", settings.plan.seed},
                      {"width", settings.plan.width},     {"height", settings.plan.height},
                      {"frames", settings.plan.frames},   {"rounds", settings.rounds}};
@@ -55,6 +57,8 @@ void WriteJson(const std::filesystem::path& file, const SpeedBenchmarkSettings& 
 void PrintResult(const SpeedBenchmarkSettings& settings, const SpeedBenchmarkResult& result) {
   std::printf("%s, %d cores, OpenCL: %s\n", ProcessorName().c_str(), Cores(),
               result.opencl_device.empty() ? "none" : result.opencl_device.c_str());
+  std::printf("by default: %s\nplugin: %s\n", result.default_device.c_str(),
+              result.plugin_file.c_str());
   std::printf("%dx%d, 36 tiles, k = 10, %d frames, %d rounds\n\n", settings.plan.width,
               settings.plan.height, settings.plan.frames, settings.rounds);
   std::printf("%-32s %9s %10s %9s %9s %8s\n", "", "frames/s", "median ms", "p95 ms", "RMS px",

@@ -6,6 +6,7 @@
 #include <gst/video/video.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,8 @@
 
 namespace windhover::replay {
 namespace {
+
+namespace fs = std::filesystem;
 
 template <auto Release>
 struct Releaser {
@@ -24,24 +27,23 @@ struct Releaser {
 template <typename T>
 using ObjectPtr = std::unique_ptr<T, Releaser<gst_object_unref>>;
 
-bool IsKnown(const char* element) {
-  const ObjectPtr<GstElementFactory> factory(gst_element_factory_find(element));
-  return factory != nullptr;
+// The folder of the plugin that was built or installed with this program; empty where there is
+// none.
+fs::path PluginFolder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  for (const char* lib : {"lib", WINDHOVER_INSTALL_LIBDIR}) {
+    const fs::path folder = program.parent_path().parent_path() / lib / "gstreamer-1.0";
+    if (fs::exists(folder / "libgstwindhover.so", error)) return folder;
+  }
+  return {};
 }
 
-void FindElements() {
-  gst_init(nullptr, nullptr);
-  if (IsKnown("whregister")) return;
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path folder =
-      program.parent_path().parent_path() / "lib" / "gstreamer-1.0";
-  if (!error) gst_registry_scan_path(gst_registry_get(), folder.c_str());
-  if (!IsKnown("whregister")) {
-    throw std::runtime_error(
-        "GStreamer does not know whregister: set GST_PLUGIN_PATH to the folder of "
-        "libgstwindhover.so");
-  }
+bool KnowsElements() {
+  GstElementFactory* factory = gst_element_factory_find("whregister");
+  if (factory != nullptr) gst_object_unref(factory);
+  return factory != nullptr;
 }
 
 void SetProperties(GstElement* pipeline, const PipelineSettings& settings) {
@@ -142,10 +144,35 @@ void AwaitEnd(GstElement* pipeline) {
 
 }  // namespace
 
+// service/app/pipeline.cc does the same: nothing that both may include knows GStreamer.
+void StartGStreamer() {
+  const fs::path folder = PluginFolder();
+  const bool told =
+      std::getenv("GST_PLUGIN_PATH") != nullptr || std::getenv("GST_PLUGIN_PATH_1_0") != nullptr;
+  // GStreamer keeps the first file of a name that it meets, and this path comes before its own.
+  if (!told && !folder.empty()) ::setenv("GST_PLUGIN_PATH", folder.c_str(), 1);
+  gst_init(nullptr, nullptr);
+  if (!KnowsElements() && !folder.empty()) {
+    gst_registry_scan_path(gst_registry_get(), folder.c_str());
+  }
+  if (!KnowsElements()) {
+    throw std::runtime_error(
+        "GStreamer does not find the elements of Windhover: set GST_PLUGIN_PATH to the folder of "
+        "libgstwindhover.so");
+  }
+}
+
+std::string PluginFile() {
+  const ObjectPtr<GstElementFactory> factory(gst_element_factory_find("whregister"));
+  const ObjectPtr<GstPlugin> plugin(
+      gst_plugin_feature_get_plugin(GST_PLUGIN_FEATURE(factory.get())));
+  return gst_plugin_get_filename(plugin.get());
+}
+
 void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
                          const PipelineSettings& settings,
                          const std::function<void(GstBuffer*)>& leave) {
-  FindElements();
+  StartGStreamer();
   const ObjectPtr<GstElement> pipeline = BuildPipeline(settings);
   const ObjectPtr<GstElement> source(gst_bin_get_by_name(GST_BIN(pipeline.get()), "source"));
   const ObjectPtr<GstElement> sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "sink"));

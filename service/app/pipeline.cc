@@ -28,25 +28,39 @@ void SetText(GObject* object, const std::string& name, const std::string& value)
   }
 }
 
+// The folder of the plugin that was built or installed with this program; empty where there is
+// none.
+fs::path PluginFolder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  for (const char* lib : {"lib", WINDHOVER_INSTALL_LIBDIR}) {
+    const fs::path folder = program.parent_path().parent_path() / lib / "gstreamer-1.0";
+    if (fs::exists(folder / "libgstwindhover.so", error)) return folder;
+  }
+  return {};
+}
+
+bool KnowsElements() {
+  GstElementFactory* factory = gst_element_factory_find("whregister");
+  if (factory != nullptr) gst_object_unref(factory);
+  return factory != nullptr;
+}
+
 }  // namespace
 
-void FindPlugin() {
-  std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  const fs::path prefix = executable.parent_path().parent_path();
-  const auto found = [] {
-    GstElementFactory* factory = gst_element_factory_find("whregister");
-    if (factory != nullptr) gst_object_unref(factory);
-    return factory != nullptr;
-  };
-  for (const char* folder : {"lib/gstreamer-1.0", WINDHOVER_INSTALL_LIBDIR "/gstreamer-1.0"}) {
-    if (std::getenv("GST_PLUGIN_PATH") != nullptr || error) break;
-    if (fs::is_directory(prefix / folder)) {
-      gst_registry_scan_path(gst_registry_get(), (prefix / folder).c_str());
-    }
-    if (found()) return;
+// replay/benchmarks/pipeline_run.cc does the same: nothing that both may include knows GStreamer.
+void StartGStreamer() {
+  const fs::path folder = PluginFolder();
+  const bool told =
+      std::getenv("GST_PLUGIN_PATH") != nullptr || std::getenv("GST_PLUGIN_PATH_1_0") != nullptr;
+  // GStreamer keeps the first file of a name that it meets, and this path comes before its own.
+  if (!told && !folder.empty()) ::setenv("GST_PLUGIN_PATH", folder.c_str(), 1);
+  gst_init(nullptr, nullptr);
+  if (!KnowsElements() && !folder.empty()) {
+    gst_registry_scan_path(gst_registry_get(), folder.c_str());
   }
-  if (!found()) {
+  if (!KnowsElements()) {
     throw std::runtime_error(
         "GStreamer does not find the elements of Windhover: set GST_PLUGIN_PATH to the folder of "
         "libgstwindhover.so");

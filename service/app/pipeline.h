@@ -20,10 +20,10 @@ struct ObjectDeleter {
   void operator()(gpointer object) const { gst_object_unref(object); }
 };
 
-// Makes the elements of ours known to GStreamer, where the environment does not say where they are:
-// they lie beside the executable. Call after gst_init. Throws std::runtime_error where they are not
-// found.
-void FindPlugin();
+// gst_init with the elements of ours known: those that lie beside the executable, before any others
+// of that name that are installed, unless GST_PLUGIN_PATH says where they are. Call before there are
+// threads: it sets GST_PLUGIN_PATH. Throws std::runtime_error where they are not found.
+void StartGStreamer();
 
 // The main job's pipeline: source ! whregister ! whbackground ! whmotion ! whpublish ! whoverlay
 // and, where there is a path for it, an H.264 file. Frames are counted on the way. Its messages go

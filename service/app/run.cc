@@ -372,8 +372,7 @@ int Job::Finish() {
 
 int Run(const RunOptions& options) {
   const Source source = FindSource(options.source);
-  gst_init(nullptr, nullptr);
-  FindPlugin();
+  StartGStreamer();
   return Job(options, source).Run();
 }
 

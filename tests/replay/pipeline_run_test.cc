@@ -4,12 +4,43 @@
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <vector>
 
+#include "tests/service/app_process.h"
+
 namespace windhover::replay {
 namespace {
+
+// In all tests of this program another plugin of the same name is installed, where GStreamer looks
+// by itself.
+class AnotherPluginInstalled : public testing::Environment {
+ public:
+  void SetUp() override {
+    const std::filesystem::path plugins = folder_ / "gstreamer-1.0/plugins";
+    std::filesystem::create_directories(plugins);
+    std::filesystem::copy_file(WINDHOVER_PLUGIN,
+                               plugins / std::filesystem::path(WINDHOVER_PLUGIN).filename());
+    ::setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);
+    ::setenv("GST_REGISTRY", (folder_ / "registry.bin").c_str(), 1);
+    ::unsetenv("GST_PLUGIN_PATH");
+    ::unsetenv("GST_PLUGIN_PATH_1_0");
+  }
+
+ private:
+  const ScratchFolder folder_;
+};
+
+const testing::Environment* const another_plugin_installed =
+    testing::AddGlobalTestEnvironment(new AnotherPluginInstalled);
+
+TEST(StartGStreamer, TakesThePluginBesideTheProgramFirst) {
+  StartGStreamer();
+  EXPECT_TRUE(std::filesystem::equivalent(PluginFile(), WINDHOVER_PLUGIN)) << PluginFile();
+}
 
 TEST(PlayThroughPipeline, KeepsFramesInOrderWithTheirContent) {
   for (const bool colour : {false, true}) {

@@ -108,6 +108,22 @@ TEST(Program, RendersDetectsAndScores) {
   EXPECT_EQ(Content(out + "/homography.txt"), Content(out + "2/homography.txt"));
 }
 
+// The CPU twin's runs are compared above.
+TEST(Program, DetectionOnAnOpenClDeviceDoesNotVary) {
+  const ScratchFolder folder;
+  const std::string flight = (folder / "flight").string();
+  ASSERT_EQ(Call("render --frames 30 --size 320x240 --out " + flight).code, 0);
+  const std::string out = (folder / "out").string();
+  for (const char* run : {"1", "2"}) {
+    const Answer answer = Call("detect " + flight + " --set device=:CPU: --out " + out + run);
+    ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_THAT(answer.text, HasSubstr("device: OpenCL CPU"));
+  }
+  EXPECT_FALSE(Content(out + "1/det.txt").empty());
+  EXPECT_EQ(Content(out + "1/det.txt"), Content(out + "2/det.txt"));
+  EXPECT_EQ(Content(out + "1/homography.txt"), Content(out + "2/homography.txt"));
+}
+
 // The first frames of a sequence as pictures one after the other: a video that does not say how
 // long it is.
 void WriteRawVideo(const std::filesystem::path& sequence, int frames,

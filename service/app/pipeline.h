@@ -21,8 +21,8 @@ struct ObjectDeleter {
 };
 
 // gst_init with the elements of ours known: those that lie beside the executable, before any others
-// of that name that are installed, unless GST_PLUGIN_PATH says where they are. Call before there are
-// threads: it sets GST_PLUGIN_PATH. Throws std::runtime_error where they are not found.
+// of that name that are installed, unless GST_PLUGIN_PATH says where they are. Call before there
+// are threads: it sets GST_PLUGIN_PATH. Throws std::runtime_error where they are not found.
 void StartGStreamer();
 
 // The main job's pipeline: source ! whregister ! whbackground ! whmotion ! whpublish ! whoverlay

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,65 +14,107 @@
 namespace windhover::replay {
 namespace {
 
-class SequenceFrames : public FrameSource {
+// Takes the size of the first frame where none is expected.
+void CheckSize(const std::filesystem::path& file, const cv::Mat& frame, cv::Size& expected) {
+  if (expected.empty()) expected = frame.size();
+  if (frame.size() == expected) return;
+  const auto text = [](const cv::Size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+  };
+  throw FormatError(file,
+                    "is of " + text(frame.size()) + " px, but the sequence of " + text(expected));
+}
+
+class PictureFrames : public FrameSource {
  public:
-  explicit SequenceFrames(std::filesystem::path folder)
-      : folder_(std::move(folder)), info_(ReadSequenceInfo(folder_)) {}
+  PictureFrames(std::vector<std::filesystem::path> pictures, cv::Size size)
+      : pictures_(std::move(pictures)), size_(size) {}
 
   cv::Mat Next() override {
-    if (next_ > info_.frames) return {};
-    const std::filesystem::path file = FramePath(folder_, info_, next_++);
+    if (next_ == pictures_.size()) return {};
+    const std::filesystem::path& file = pictures_[next_++];
     cv::Mat frame = cv::imread(file.string(), cv::IMREAD_COLOR);
     if (frame.empty()) throw FormatError(file, "the frame is missing or no picture");
-    if (frame.cols != info_.width || frame.rows != info_.height) {
-      throw FormatError(file, "is " + std::to_string(frame.cols) + "x" +
-                                  std::to_string(frame.rows) + ", but seqinfo.ini says " +
-                                  std::to_string(info_.width) + "x" + std::to_string(info_.height));
-    }
+    CheckSize(file, frame, size_);
     return frame;
   }
-  int frames() const override { return info_.frames; }
+  int frames() const override { return static_cast<int>(pictures_.size()); }
   bool knows_frames() const override { return true; }
 
  private:
-  std::filesystem::path folder_;
-  SequenceInfo info_;
-  int next_ = 1;
+  std::vector<std::filesystem::path> pictures_;
+  cv::Size size_;
+  std::size_t next_ = 0;
 };
 
 class VideoFrames : public FrameSource {
  public:
   // FFmpeg alone: what else OpenCV tries where that fails looks for cameras and writes to stderr.
-  explicit VideoFrames(const std::filesystem::path& file)
-      : file_(file), capture_(file.string(), cv::CAP_FFMPEG) {
+  VideoFrames(const std::filesystem::path& file, std::optional<int> known_frames, cv::Size size)
+      : file_(file),
+        capture_(file.string(), cv::CAP_FFMPEG),
+        known_frames_(known_frames),
+        size_(size) {
     if (!capture_.isOpened()) throw FormatError(file, "is no video that can be read");
   }
 
   cv::Mat Next() override {
     cv::Mat frame;
-    if (!capture_.read(frame)) return {};
-    if (size_.empty()) size_ = frame.size();
-    if (size_ != frame.size()) throw FormatError(file_, "the size of the frames changes");
+    if (!capture_.read(frame)) {
+      if (known_frames_ && read_ < *known_frames_) Complain("ends after " + std::to_string(read_));
+      return {};
+    }
+    if (known_frames_ && ++read_ > *known_frames_) Complain("goes on");
+    CheckSize(file_, frame, size_);
     return frame;
   }
   // OpenCV makes large negative numbers of an unknown length.
   int frames() const override {
-    return static_cast<int>(std::clamp(capture_.get(cv::CAP_PROP_FRAME_COUNT), 0.0, 1e8));
+    return known_frames_.value_or(
+        static_cast<int>(std::clamp(capture_.get(cv::CAP_PROP_FRAME_COUNT), 0.0, 1e8)));
   }
-  bool knows_frames() const override { return false; }
+  bool knows_frames() const override { return known_frames_.has_value(); }
 
  private:
+  [[noreturn]] void Complain(const std::string& what) const {
+    throw FormatError(
+        file_, what + ", but the sequence is of " + std::to_string(*known_frames_) + " frames");
+  }
+
   std::filesystem::path file_;
   cv::VideoCapture capture_;
+  std::optional<int> known_frames_;
+  int read_ = 0;
   cv::Size size_;
 };
+
+std::unique_ptr<FrameSource> OpenSequence(const std::filesystem::path& folder) {
+  const SequenceInfo info = ReadSequenceInfo(folder);
+  const cv::Size size(info.width, info.height);
+  if (const std::optional<std::filesystem::path> video = SequenceVideo(folder, info)) {
+    return OpenVideo(*video, info.frames, size);
+  }
+  std::vector<std::filesystem::path> pictures;
+  for (int i = 1; i <= info.frames; ++i) pictures.push_back(FramePath(folder, info, i));
+  return OpenPictures(std::move(pictures), size);
+}
 
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenFrames(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw FormatError(path, "does not exist");
-  if (std::filesystem::is_directory(path)) return std::make_unique<SequenceFrames>(path);
-  return std::make_unique<VideoFrames>(path);
+  if (std::filesystem::is_directory(path)) return OpenSequence(path);
+  return std::make_unique<VideoFrames>(path, std::nullopt, cv::Size());
+}
+
+std::unique_ptr<FrameSource> OpenPictures(std::vector<std::filesystem::path> pictures,
+                                          cv::Size size) {
+  return std::make_unique<PictureFrames>(std::move(pictures), size);
+}
+
+std::unique_ptr<FrameSource> OpenVideo(const std::filesystem::path& file, int frames,
+                                       cv::Size size) {
+  return std::make_unique<VideoFrames>(file, frames, size);
 }
 
 }  // namespace windhover::replay

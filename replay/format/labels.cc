@@ -15,6 +15,7 @@ namespace {
 // Digits of box coordinates: a hundredth of a pixel at 10000 px.
 constexpr int kBoxDigits = 8;
 constexpr std::size_t kLeastColumns = 7;
+constexpr std::size_t kClassColumn = 7;
 constexpr std::size_t kVisibleColumn = 8;
 
 LabelledBox ParseBox(const std::filesystem::path& file, std::size_t line, std::string_view text) {
@@ -25,6 +26,7 @@ LabelledBox ParseBox(const std::filesystem::path& file, std::size_t line, std::s
                           " comma-separated columns, got " + std::to_string(parts.size()));
   }
   std::array<double, kVisibleColumn + 1> values{};
+  values[kClassColumn] = 1.0;
   values[kVisibleColumn] = 1.0;
   for (std::size_t i = 0; i < parts.size() && i < values.size(); ++i) {
     const std::optional<double> value = ParseNumber(parts[i]);
@@ -42,6 +44,9 @@ LabelledBox ParseBox(const std::filesystem::path& file, std::size_t line, std::s
   if (id != std::floor(id) || std::abs(id) > 1e15) {
     throw FormatError(file, line, "the id must be whole");
   }
+  if (kind != std::floor(kind) || std::abs(kind) > 1e6) {
+    throw FormatError(file, line, "the class must be whole");
+  }
   if (width <= 0 || height <= 0) {
     throw FormatError(file, line, "width and height must be above 0");
   }
@@ -49,7 +54,8 @@ LabelledBox ParseBox(const std::filesystem::path& file, std::size_t line, std::s
           static_cast<std::int64_t>(id),
           {left - 1, top - 1, width, height},
           score,
-          visible};
+          visible,
+          static_cast<int>(kind)};
 }
 
 std::string BoxText(const LabelledBox& box) {
@@ -98,8 +104,8 @@ std::vector<LabelledBox> ReadBoxes(const std::filesystem::path& file) {
 void WriteTruthBoxes(const std::filesystem::path& file, const std::vector<LabelledBox>& boxes) {
   std::string text;
   for (const LabelledBox& box : boxes) {
-    text +=
-        BoxText(box) + "," + NumberText(box.score, 3) + ",1," + NumberText(box.visible, 3) + "\n";
+    text += BoxText(box) + "," + NumberText(box.score, 3) + "," + std::to_string(box.object_class) +
+            "," + NumberText(box.visible, 3) + "\n";
   }
   WriteText(file, text);
 }

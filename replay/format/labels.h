@@ -16,6 +16,7 @@ struct LabelledBox {
   Box box;               // 0-based px, as everywhere in the program
   double score = 1.0;  // confidence of a detection; for truth 0 means "do not count" (MOTChallenge)
   double visible = 1.0;  // share of the object that is seen, 0 to 1; truth only
+  int object_class = 1;  // MOTChallenge's number; 1 where nothing says
 };
 
 // MOTChallenge text: frame, id, left, top, width, height, score[, class[, visible[, ...]]], with
@@ -23,7 +24,7 @@ struct LabelledBox {
 // may end after the score. Throws FormatError for the first malformed line.
 std::vector<LabelledBox> ReadBoxes(const std::filesystem::path& file);
 
-// gt.txt and static.txt: nine columns, class 1.
+// gt.txt and static.txt: nine columns.
 void WriteTruthBoxes(const std::filesystem::path& file, const std::vector<LabelledBox>& boxes);
 // det.txt: ten columns as MOTChallenge has them, the last three -1.
 void WriteDetections(const std::filesystem::path& file, const std::vector<LabelledBox>& boxes);

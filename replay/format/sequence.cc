@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "replay/format/format_error.h"
+#include "replay/format/media_files.h"
 #include "replay/format/text_lines.h"
 
 namespace windhover::replay {
@@ -69,6 +70,16 @@ std::filesystem::path FramePath(const std::filesystem::path& sequence, const Seq
   std::array<char, 16> number{};
   std::snprintf(number.data(), number.size(), "%06d", frame);
   return sequence / info.image_folder / (number.data() + info.image_extension);
+}
+
+std::optional<std::filesystem::path> SequenceVideo(const std::filesystem::path& sequence,
+                                                   const SequenceInfo& info) {
+  if (std::filesystem::is_directory(sequence / info.image_folder)) return std::nullopt;
+  const std::vector<std::filesystem::path> videos = ListVideos(sequence);
+  if (videos.empty())
+    throw FormatError(sequence / info.image_folder, "is missing, and so is a video");
+  if (videos.size() > 1) throw FormatError(sequence, "holds several videos: which one is meant?");
+  return videos.front();
 }
 
 }  // namespace windhover::replay

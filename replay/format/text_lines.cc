@@ -55,6 +55,31 @@ std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
+std::vector<double> ParseColumns(const std::filesystem::path& file, std::size_t line,
+                                 std::string_view text, std::size_t least, std::size_t most) {
+  std::vector<std::string_view> parts =
+      Split(text, text.find(',') == std::string_view::npos ? ' ' : ',');
+  if (parts.size() > 1 && parts.back().empty()) parts.pop_back();
+  if (parts.size() < least || parts.size() > most) {
+    const std::string expected = least == most
+                                     ? std::to_string(least)
+                                     : std::to_string(least) + " to " + std::to_string(most);
+    throw FormatError(file, line,
+                      "expected " + expected + " columns, got " + std::to_string(parts.size()));
+  }
+  std::vector<double> columns;
+  for (const std::string_view part : parts) {
+    const std::optional<double> value = ParseNumber(part);
+    if (!value) {
+      throw FormatError(file, line,
+                        "column " + std::to_string(columns.size() + 1) + " is no number: '" +
+                            std::string(part) + "'");
+    }
+    columns.push_back(*value);
+  }
+  return columns;
+}
+
 void WriteText(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   const std::filesystem::path pending = file.string() + ".pending";

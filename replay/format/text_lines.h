@@ -24,6 +24,12 @@ std::vector<std::string_view> Split(std::string_view text, char separator);
 // A finite number that is the whole of `text`, in the C locale; nothing otherwise.
 std::optional<double> ParseNumber(std::string_view text);
 
+// The numbers of a line, `least` to `most` of them: separated by commas, or by blanks where it has
+// no comma. One comma at the end is passed over. Throws FormatError with file and line where there
+// are fewer or more, or something else than a number.
+std::vector<double> ParseColumns(const std::filesystem::path& file, std::size_t line,
+                                 std::string_view text, std::size_t least, std::size_t most);
+
 // Writes `text` to `file` in one step (a reader sees the old content or the new), making its folder
 // where it is missing. Throws FormatError.
 void WriteText(const std::filesystem::path& file, const std::string& text);

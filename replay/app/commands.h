@@ -9,6 +9,7 @@ namespace windhover::replay {
 // callback; an error is an exception with a text for people.
 void AddRenderCommand(CLI::App& app);
 void AddDetectCommand(CLI::App& app);
+void AddInfoCommand(CLI::App& app);
 void AddScoreCommand(CLI::App& app);
 void AddBenchCommand(CLI::App& app);
 

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "windhover-replay " WINDHOVER_VERSION);
   app.require_subcommand(1);
   windhover::replay::AddRenderCommand(app);
+  windhover::replay::AddInfoCommand(app);
   windhover::replay::AddDetectCommand(app);
   windhover::replay::AddScoreCommand(app);
   windhover::replay::AddBenchCommand(app);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/offline/offline_detection.h"
 
-#include <cstring>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "replay/offline/luma.h"
 #include "service/vision/background.h"
 #include "service/vision/motion.h"
 #include "service/vision/registration.h"
@@ -56,13 +55,7 @@ OfflineDetection::OfflineDetection(std::shared_ptr<Backend> backend, int width, 
 OfflineDetection::~OfflineDetection() = default;
 
 void OfflineDetection::Push(const cv::Mat& frame) {
-  cv::cvtColor(frame, state_->luma, cv::COLOR_BGR2GRAY);
-  {
-    const MappedImage<std::uint8_t> pixels = state_->gray.Write();
-    for (int y = 0; y < frame.rows; ++y) {
-      std::memcpy(pixels.row(y), state_->luma.ptr(y), static_cast<std::size_t>(frame.cols));
-    }
-  }
+  CopyLuma(frame, state_->luma, state_->gray);
   state_->background.Push(state_->gray, state_->registration.Register(state_->gray));
   state_->TakeEvidence();
 }

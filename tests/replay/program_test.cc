@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
@@ -29,7 +30,8 @@ using testing::Not;
 
 struct Answer {
   int code = -1;
-  std::string text;  // standard output and error
+  std::string text;    // standard output and error
+  std::string output;  // standard output
 };
 
 // Arguments are separated by single blanks.
@@ -37,8 +39,9 @@ Answer Call(const std::string& arguments) {
   std::vector<std::string> command = {WINDHOVER_REPLAY};
   for (const std::string_view part : Split(arguments, ' ')) command.emplace_back(part);
   const Outcome outcome = RunToEnd(command);
-  Answer answer = {outcome.exit_code, outcome.errors};
-  for (const std::string& line : outcome.lines) answer.text += line + "\n";
+  Answer answer = {outcome.exit_code, outcome.errors, ""};
+  for (const std::string& line : outcome.lines) answer.output += line + "\n";
+  answer.text += answer.output;
   return answer;
 }
 
@@ -50,7 +53,7 @@ std::string Content(const std::filesystem::path& file) {
 TEST(Program, HelpAndVersion) {
   EXPECT_EQ(Call("--version").code, 0);
   for (const char* command :
-       {"", "render", "detect", "score motion", "score registration", "bench speed"}) {
+       {"", "render", "info", "detect", "score motion", "score registration", "bench speed"}) {
     const Answer answer = Call(std::string(command) + " --help");
     EXPECT_EQ(answer.code, 0) << command;
     EXPECT_THAT(answer.text, HasSubstr("Usage"));
@@ -74,6 +77,8 @@ TEST(Program, MistakesAreOneClearLine) {
   expect("detect nowhere --set k=0" + out, "k");
   expect("detect nowhere --set nonsense=1" + out, "nonsense");
   expect("score motion --truth nowhere --detections nothing.txt", "cannot be read");
+  expect("info nowhere", "does not exist");
+  expect("info " + folder.path().string(), "is no sequence, video or known set");
   WriteText(folder.path() / "letter.txt", "dear\n");
   expect("render --frames 1 --out " + folder.path().string(), "not replaced");
   EXPECT_EQ(Content(folder.path() / "letter.txt"), "dear\n");
@@ -175,6 +180,54 @@ TEST(Program, ASourceThatBreaksOffIsNotScored) {
   EXPECT_THAT(Call(motion + " --frames 25").text, HasSubstr("has 24 frames, but 25"));
   WriteText(out + "1/det.txt", "25,1,1,1,5,5,1\n");
   EXPECT_THAT(Call(motion).text, HasSubstr("box in frame 25"));
+}
+
+TEST(Program, InfoDescribesWhatIsThere) {
+  const ScratchFolder folder;
+  const std::filesystem::path flight = folder / "set" / "01";
+  ASSERT_EQ(Call("render --frames 12 --size 160x120 --out " + flight.string()).code, 0);
+  const Answer one = Call("info " + flight.string());
+  ASSERT_EQ(one.code, 0) << one.text;
+  EXPECT_THAT(one.text, AllOf(HasSubstr("MOTChallenge: 160x120 px, 12 frames, 25 a second"),
+                              HasSubstr("(movers)"), HasSubstr("camera, from truth, 11 pairs"),
+                              Not(HasSubstr("measured"))));
+
+  // A video has no truth: what is measured must be what is true of the flight it shows.
+  WriteRawVideo(flight, 12, folder / "set" / "flight.mjpeg");
+  const std::string set = (folder / "set").string();
+  const auto recordings = [](const Answer& answer) {
+    return nlohmann::json::parse(answer.output).at("recordings");
+  };
+  std::filesystem::create_directory(folder / "set" / "02");
+  const Answer all = Call("info --json --device cpu " + set);
+  ASSERT_EQ(all.code, 0) << all.text;
+  const nlohmann::json both = recordings(all);
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[0].at("frame_rate_hz"), 25);
+  EXPECT_TRUE(both[0].at("truth").at("homographies"));
+  EXPECT_TRUE(both[0].at("camera_measured").is_null());
+  EXPECT_EQ(both[1].at("layout"), "video");
+  EXPECT_EQ(both[1].at("frames"), 12);
+  EXPECT_TRUE(both[1].at("camera_true").is_null());
+  const auto median = [](const nlohmann::json& camera, const char* figure) {
+    return camera.at(figure).at("median").get<double>();
+  };
+  EXPECT_NEAR(median(both[1].at("camera_measured"), "shift_px"),
+              median(both[0].at("camera_true"), "shift_px"), 0.2);
+  EXPECT_NEAR(median(both[1].at("camera_measured"), "rotation_deg"),
+              median(both[0].at("camera_true"), "rotation_deg"), 0.1);
+
+  const nlohmann::json measured =
+      recordings(Call("info --measure --json --device cpu " + flight.string()));
+  EXPECT_NEAR(median(measured[0].at("camera_measured"), "shift_px"),
+              median(both[0].at("camera_true"), "shift_px"), 0.2);
+
+  // One that is broken does not hide the others.
+  std::filesystem::remove(FramePath(flight, ReadSequenceInfo(flight), 5));
+  const Answer broken = Call("info --frames 0 " + set);
+  EXPECT_EQ(broken.code, 1);
+  EXPECT_THAT(broken.text, AllOf(HasSubstr("000005.png: is missing"), HasSubstr("flight, video"),
+                                 HasSubstr("1 of 2 recordings cannot be read")));
 }
 
 TEST(Program, WhatIsWrongIsSaidBeforeTheWork) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/offline/luma.h"
+
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+
+namespace windhover::replay {
+
+void CopyLuma(const cv::Mat& frame, cv::Mat& luma, GrayImage& gray) {
+  cv::cvtColor(frame, luma, cv::COLOR_BGR2GRAY);
+  const MappedImage<std::uint8_t> pixels = gray.Write();
+  for (int y = 0; y < luma.rows; ++y) {
+    std::memcpy(pixels.row(y), luma.ptr(y), static_cast<std::size_t>(luma.cols));
+  }
+}
+
+}  // namespace windhover::replay

@@ -111,7 +111,7 @@ void Info(const InfoSettings& settings) {
   nlohmann::ordered_json json;
   json["recordings"] = nlohmann::ordered_json::array();
   std::size_t failed = 0;
-  long long frames = 0;
+  std::int64_t frames = 0;
   for (const std::filesystem::path& path : paths) {
     try {
       const RecordingSummary summary = describer.Summarise(path);
@@ -129,7 +129,7 @@ void Info(const InfoSettings& settings) {
   if (settings.json) {
     std::printf("%s\n", json.dump(2).c_str());
   } else if (paths.size() > 1) {
-    std::printf("%zu recordings, %lld frames\n", paths.size(), frames);
+    std::printf("%s\n", fmt::format("{} recordings, {} frames", paths.size(), frames).c_str());
   }
   if (failed > 0) {
     throw std::runtime_error(

@@ -65,8 +65,8 @@ std::string CameraText(const char* source, const CameraStatistics& camera) {
   if (camera.pairs == 0) return text;
   return text + fmt::format(
                     ": shift median {:.2f}, largest {:.2f} px; rotation median {:.2f}, "
-                    "largest {:.2f} degrees; scale {:.3f} to {:.3f}; overlap median {:.2f}, "
-                    "least {:.2f}",
+                    "largest {:.2f} degrees; scale {:.3f} to {:.3f}; overlap median {:.3f}, "
+                    "least {:.3f}",
                     camera.shift_px->median, camera.shift_px->largest, camera.rotation_deg->median,
                     camera.rotation_deg->largest, camera.scale->least, camera.scale->largest,
                     camera.overlap->median, camera.overlap->least);

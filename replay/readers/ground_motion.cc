@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 
 #include "service/vision/homography.h"
 
@@ -43,6 +44,27 @@ Eigen::Matrix2d Derivative(const Eigen::Matrix3d& h, const Eigen::Vector2d& x) {
   const Eigen::Vector3d image = h * x.homogeneous();
   const Eigen::Vector2d there = image.hnormalized();
   return (h.topLeftCorner<2, 2>() - there * h.block<1, 2>(2, 0)) / image.z();
+}
+
+// Share of the frame, 0 to 1, that the frame before shows, too. Exact where all of the frame is
+// ground.
+double Overlap(const Eigen::Matrix3d& previous_from_frame, int width, int height) {
+  const Eigen::Matrix3d frame_from_previous = previous_from_frame.inverse();
+  const std::vector<cv::Point2f> frame = {
+      {-0.5F, -0.5F},
+      {static_cast<float>(width) - 0.5F, -0.5F},
+      {static_cast<float>(width) - 0.5F, static_cast<float>(height) - 0.5F},
+      {-0.5F, static_cast<float>(height) - 0.5F}};
+  std::vector<cv::Point2f> previous;
+  for (const cv::Point2f& corner : frame) {
+    const Eigen::Vector3d there = frame_from_previous * Eigen::Vector3d(corner.x, corner.y, 1);
+    // A corner in the sky.
+    if (there.z() <= 0) return OverlapShare(previous_from_frame, width, height, width, height);
+    previous.emplace_back(static_cast<float>(there.x() / there.z()),
+                          static_cast<float>(there.y() / there.z()));
+  }
+  std::vector<cv::Point2f> common;
+  return cv::intersectConvexConvex(frame, previous, common) / (static_cast<double>(width) * height);
 }
 
 }  // namespace
@@ -89,7 +111,7 @@ CameraStatistics SummariseCamera(const GroundMotion& motion, int width, int heig
                                            derivative(0, 0) + derivative(1, 1))) *
                        180 / std::numbers::pi);
     scale.push_back(1 / std::sqrt(std::abs(derivative.determinant())));
-    overlap.push_back(OverlapShare(previous_from_frame, width, height, width, height));
+    overlap.push_back(Overlap(previous_from_frame, width, height));
   }
   if (statistics.pairs == 0) return statistics;
   statistics.shift_px = SpreadOf(std::move(shift));

@@ -119,7 +119,7 @@ void CheckFrame(const Recording& recording, const fs::path& file, std::size_t li
   }
   if (frame > recording.frames) {
     throw FormatError(file, line,
-                      "is of frame " + std::to_string(static_cast<long long>(frame)) +
+                      "is of frame " + std::to_string(static_cast<std::int64_t>(frame)) +
                           ", but the recording has " + std::to_string(recording.frames));
   }
 }

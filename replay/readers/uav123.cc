@@ -41,10 +41,11 @@ std::optional<Listed> FindListed(const fs::path& file, const std::string& set,
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  static const std::regex kToken(
+  static const std::regex token_form(
       R"(seq(\w+)\s*=|'name'\s*,\s*'([^']*)'\s*,\s*'path'\s*,\s*'([^']*)'\s*,\s*'startFrame'\s*,\s*(\d{1,9})\s*,\s*'endFrame'\s*,\s*(\d{1,9}))");
   bool in_set = false;
-  for (std::sregex_iterator token(text.begin(), text.end(), kToken), end; token != end; ++token) {
+  for (std::sregex_iterator token(text.begin(), text.end(), token_form), end; token != end;
+       ++token) {
     const std::smatch& match = *token;
     if (match[1].matched) {
       in_set = match[1] == set;

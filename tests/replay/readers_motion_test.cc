@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -197,6 +198,16 @@ TEST(CameraStatistics, ThingsGrowWhereTheCameraComesNearer) {
       SummariseCamera(TrueGroundMotion({Eigen::Matrix3d::Identity(), closer}), 640, 480);
   EXPECT_NEAR(statistics.scale->median, 1.25, 1e-12);
   EXPECT_NEAR(statistics.rotation_deg->largest, 0, 1e-12);
+  EXPECT_NEAR(statistics.overlap->least, 1, 1e-3);
+  // Seen the other way round, only 0.8 of either side was there before; and a step of 8 of 640 px
+  // leaves the rest.
+  Eigen::Matrix3d step = Eigen::Matrix3d::Identity();
+  step(0, 2) = 8;
+  const CameraStatistics away =
+      SummariseCamera(TrueGroundMotion({closer, Eigen::Matrix3d::Identity(), step}), 640, 480);
+  EXPECT_NEAR(away.scale->least, 0.8, 1e-12);
+  EXPECT_NEAR(away.overlap->least, 0.64, 1e-3);
+  EXPECT_NEAR(away.overlap->largest, 632.0 / 640, 1e-3);
 }
 
 // The ground's picture of a pinhole camera that looks at the horizon and flies forward: above the

@@ -177,7 +177,7 @@ TEST(UavdtReader, MotHasThreeFiles) {
             "1,1,14,7,10,5,1,1,-1\n2,1,13,7,10,5,1,1,-1\n1,2,0,30,9,4,1,1,-1\n");
   WriteText(truth / "M0101_gt_whole.txt",
             "1,1,14,7,10,5,1,1,1\n2,1,13,7,10,5,1,4,1\n1,2,0,30,9,4,2,2,3\n");
-  WriteText(truth / "M0101_gt_ignore.txt", "1,-1,40,0,20,10,1,-1,-1\n");
+  WriteText(truth / "M0101_gt_ignore.txt", "1,17,40,0,20,10,1,-1,-1\n");
   const Recording recording = OpenRecording(sequence);
   EXPECT_EQ(recording.layout, "UAVDT MOT");
   EXPECT_EQ(recording.frame_rate_hz, 30);
@@ -191,7 +191,7 @@ TEST(UavdtReader, MotHasThreeFiles) {
   EXPECT_TRUE(recording.labels[2].truncated);
   ExpectBox(recording.labels[3], 1, -1, {40, 0, 20, 10}, 0);
   EXPECT_THAT(FindRecordings(folder.path()), ElementsAre(sequence));
-  WriteText(truth / "M0101_gt_ignore.txt", "1,-1,40,0,20,10,1,-1,-1\n9,-1,40,0,20,10,1,-1,-1\n");
+  WriteText(truth / "M0101_gt_ignore.txt", "1,17,40,0,20,10,1,-1,-1\n9,17,40,0,20,10,1,-1,-1\n");
   EXPECT_THAT(OpenComplaint(sequence), HasSubstr("M0101_gt_ignore.txt:2: is of frame 9"));
   fs::remove(truth / "M0101_gt_ignore.txt");
   WriteText(truth / "M0101_gt_whole.txt", "1,1,14,7,10,5,1,1,4\n");

@@ -6,6 +6,7 @@
 
 #include "replay/format/format_error.h"
 #include "replay/format/homographies.h"
+#include "replay/format/horizon.h"
 
 namespace windhover::replay {
 
@@ -37,15 +38,27 @@ bool SequenceTruth::HasHomographies() const {
 }
 
 std::vector<Eigen::Matrix3d> SequenceTruth::Homographies() const {
-  std::vector<Eigen::Matrix3d> homographies = ReadHomographies(HomographiesPath(sequence_));
-  if (homographies.size() != static_cast<std::size_t>(info_.frames)) {
-    throw FormatError(HomographiesPath(sequence_),
-                      "is of " + std::to_string(homographies.size()) +
-                          " frames, but seqinfo.ini says that there are " +
-                          std::to_string(info_.frames));
-  }
+  const std::filesystem::path file = HomographiesPath(sequence_);
+  std::vector<Eigen::Matrix3d> homographies = ReadHomographies(file);
+  CheckNumber(file, homographies.size());
   homographies.resize(frames_);
   return homographies;
+}
+
+std::vector<Eigen::Vector3d> SequenceTruth::Horizons() const {
+  const std::filesystem::path file = HorizonPath(sequence_);
+  if (!std::filesystem::exists(file)) return {};
+  std::vector<Eigen::Vector3d> horizons = ReadHorizons(file);
+  CheckNumber(file, horizons.size());
+  horizons.resize(frames_);
+  return horizons;
+}
+
+void SequenceTruth::CheckNumber(const std::filesystem::path& file, std::size_t frames) const {
+  if (frames == static_cast<std::size_t>(info_.frames)) return;
+  throw FormatError(file, "is of " + std::to_string(frames) +
+                              " frames, but seqinfo.ini says that there are " +
+                              std::to_string(info_.frames));
 }
 
 }  // namespace windhover::replay

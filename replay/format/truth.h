@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
@@ -21,6 +22,7 @@ class SequenceTruth {
   int frames() const { return frames_; }
   int width() const { return info_.width; }    // px
   int height() const { return info_.height; }  // px
+  double frame_rate_hz() const { return info_.frame_rate_hz; }
 
   // Boxes of what moves. Throws FormatError for malformed lines and frames that the sequence lacks.
   std::vector<LabelledBox> Movers() const;
@@ -29,8 +31,13 @@ class SequenceTruth {
   // first_from_frame of each frame. Throws FormatError where they are malformed or not as many as
   // the sequence has frames.
   std::vector<Eigen::Matrix3d> Homographies() const;
+  // Of each frame as in horizon.h; empty where the sequence shows no sky. Throws FormatError as
+  // Homographies does.
+  std::vector<Eigen::Vector3d> Horizons() const;
 
  private:
+  void CheckNumber(const std::filesystem::path& file, std::size_t frames) const;
+
   std::filesystem::path sequence_;
   SequenceInfo info_;
   int frames_;

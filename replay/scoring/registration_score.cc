@@ -7,6 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
+
+#include "replay/scoring/oriented.h"
+#include "replay/scoring/summary.h"
 
 namespace windhover::replay {
 namespace {
@@ -26,21 +30,51 @@ void ForEachGridPoint(int width, int height, Visit&& visit) {
   }
 }
 
+bool IsGround(const std::optional<Eigen::Vector3d>& horizon, const Eigen::Vector2d& point) {
+  return !horizon || horizon->dot(point.homogeneous()) > 0;
+}
+
+void CheckNumbers(std::size_t measured, std::size_t truth, std::size_t horizons, int gap) {
+  if (measured != truth) {
+    throw std::invalid_argument("there are homographies of " + std::to_string(measured) +
+                                " frames, but truth for " + std::to_string(truth));
+  }
+  if (horizons != 0 && horizons != truth) {
+    throw std::invalid_argument("there are horizons of " + std::to_string(horizons) +
+                                " frames, but truth for " + std::to_string(truth));
+  }
+  if (gap < 1) throw std::invalid_argument("a gap is of at least 1 frame");
+}
+
+void Summarise(RegistrationScore& score) {
+  const Summary summary = SummaryOf(score.rms_px);
+  score.pairs = summary.count;
+  score.without_ground = static_cast<int>(score.rms_px.size()) - summary.count;
+  score.mean_px = summary.mean;
+  score.median_px = summary.median;
+  score.max_px = summary.largest;
+  score.failures = static_cast<int>(
+      std::count_if(score.rms_px.begin(), score.rms_px.end(),
+                    [](const std::optional<double>& rms) { return rms && *rms > kFailurePx; }));
+}
+
 }  // namespace
 
 std::optional<double> RegistrationRms(const Eigen::Matrix3d& measured, const Eigen::Matrix3d& truth,
-                                      int width, int height) {
+                                      int width, int height, const GroundSeen& ground) {
+  const Eigen::Matrix3d measured_in_front = Oriented(measured);
+  const Eigen::Matrix3d truth_in_front = Oriented(truth);
   double sum = 0;
   int points = 0;
   ForEachGridPoint(width, height, [&](const Eigen::Vector2d& point) {
-    const Eigen::Vector3d there = truth * point.homogeneous();
-    if (there.z() <= 0) return;
+    const Eigen::Vector3d there = truth_in_front * point.homogeneous();
+    if (!IsGround(ground.in_a, point) || there.z() <= 0) return;
     const Eigen::Vector2d true_place = there.hnormalized();
     if (true_place.x() < 0 || true_place.y() < 0 || true_place.x() > width - 1 ||
-        true_place.y() > height - 1) {
+        true_place.y() > height - 1 || !IsGround(ground.in_b, true_place)) {
       return;
     }
-    const Eigen::Vector3d found = measured * point.homogeneous();
+    const Eigen::Vector3d found = measured_in_front * point.homogeneous();
     sum += found.z() > 0 ? (found.hnormalized() - true_place).squaredNorm()
                          : std::numeric_limits<double>::infinity();
     ++points;
@@ -51,37 +85,28 @@ std::optional<double> RegistrationRms(const Eigen::Matrix3d& measured, const Eig
 
 RegistrationScore ScoreRegistration(const std::vector<Eigen::Matrix3d>& measured,
                                     const std::vector<Eigen::Matrix3d>& truth, int width,
-                                    int height) {
-  if (measured.size() != truth.size()) {
-    throw std::invalid_argument("there are homographies of " + std::to_string(measured.size()) +
-                                " frames, but truth for " + std::to_string(truth.size()));
-  }
-  const auto normalised = [](const Eigen::Matrix3d& matrix) {
-    return Eigen::Matrix3d(matrix / matrix(2, 2));
+                                    int height, int gap,
+                                    std::span<const Eigen::Vector3d> horizons) {
+  CheckNumbers(measured.size(), truth.size(), horizons.size(), gap);
+  const auto horizon = [&](std::size_t frame) {
+    return horizons.empty() ? std::nullopt : std::optional<Eigen::Vector3d>(horizons[frame]);
   };
   RegistrationScore score;
-  if (truth.empty()) return score;
-  double sum = 0;
-  for (std::size_t i = 1; i < truth.size(); ++i) {
-    const std::optional<double> rms =
-        RegistrationRms(normalised(measured[i - 1].inverse() * measured[i]),
-                        normalised(truth[i - 1].inverse() * truth[i]), width, height);
-    score.rms_px.push_back(rms);
-    if (!rms) {
-      ++score.without_ground;
-      continue;
-    }
-    ++score.pairs;
-    sum += *rms;
-    score.max_px = std::max(score.max_px.value_or(0), *rms);
-    if (*rms > kFailurePx) ++score.failures;
+  score.gap = gap;
+  for (std::size_t i = static_cast<std::size_t>(gap); i < truth.size(); ++i) {
+    const std::size_t earlier = i - static_cast<std::size_t>(gap);
+    score.rms_px.push_back(RegistrationRms(measured[earlier].inverse() * measured[i],
+                                           truth[earlier].inverse() * truth[i], width, height,
+                                           {horizon(i), horizon(earlier)}));
   }
-  if (score.pairs > 0) score.mean_px = sum / score.pairs;
-  // A picture always has all of its ground in common with itself.
-  score.drift_px = RegistrationRms(normalised(truth.back().inverse() * truth.front() *
-                                              measured.front().inverse() * measured.back()),
-                                   Eigen::Matrix3d::Identity(), width, height)
-                       .value();
+  Summarise(score);
+  // Where truth puts the frame again after the measurement has taken it to the first one.
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    score.drifts_px.push_back(RegistrationRms(
+        truth[i].inverse() * truth.front() * measured.front().inverse() * measured[i],
+        Eigen::Matrix3d::Identity(), width, height, {horizon(i), horizon(i)}));
+  }
+  if (!score.drifts_px.empty()) score.drift_px = score.drifts_px.back().value_or(0);
   return score;
 }
 

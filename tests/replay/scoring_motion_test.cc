@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <stdexcept>
 #include <vector>
 
+#include "replay/scoring/frame_match.h"
 #include "replay/scoring/motion_score.h"
-#include "replay/scoring/registration_score.h"
 
 namespace windhover::replay {
 namespace {
@@ -132,97 +127,62 @@ TEST(MotionScore, TruthThatDoesNotCountCoversTogetherAndOnlyOnce) {
 
 TEST(MotionScore, FramesAreApart) { EXPECT_EQ(ScoreMotion({At(1, 0, 0)}, {At(2, 0, 0)}).hits, 0); }
 
-Eigen::Matrix3d Shift(double x, double y) {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
-  matrix(0, 2) = x;
-  matrix(1, 2) = y;
-  return matrix;
+TEST(CentreHits, LieWithinHalfTheDiagonal) {
+  // 6 x 8: half a diagonal is 5 px. The middle is (3, 4).
+  const std::vector<LabelledBox> truth = {At(1, 0, 0, 6, 8)};
+  const auto hits = [&](double middle_x, double middle_y) {
+    const std::vector<FrameBoxes> frames =
+        BoxesByFrame(truth, std::vector<LabelledBox>{At(1, middle_x - 1, middle_y - 1, 2, 2)});
+    return CountHits(MatchFrames(frames, HitRule::ByCentre())).hits;
+  };
+  EXPECT_EQ(hits(3, 4), 1);
+  EXPECT_EQ(hits(8, 4), 1);
+  EXPECT_EQ(hits(6, 8), 1);  // 3 to the right, 4 down: exactly 5
+  EXPECT_EQ(hits(8.01, 4), 0);
 }
 
-TEST(RegistrationScore, AShiftIsItsOwnLength) {
-  EXPECT_NEAR(RegistrationRms(Shift(3, 4), Shift(0, 0), 640, 480).value(), 5, 1e-12);
-  EXPECT_EQ(RegistrationRms(Shift(7, -3), Shift(7, -3), 640, 480), 0);
+TEST(CentreHits, ReachThreePixelsAroundTheSmallest) {
+  const LabelledBox dot = At(1, 10, 10, 2, 2);  // middle at 11
+  const HitRule rule = HitRule::ByCentre();
+  EXPECT_GT(rule.Fit(dot.box, {13, 10, 2, 2}), 0);
+  EXPECT_EQ(rule.Fit(dot.box, {13.1, 10, 2, 2}), 0);
+  // However large the detection is.
+  EXPECT_GT(rule.Fit(dot.box, {-89, -89, 200, 200}), 0);
 }
 
-TEST(RegistrationScore, AStretchByHand) {
-  // x' = 1.01 x over 0..100: the error is 0.01 x, and its mean square over eq. spaced points
-  // x = 0, 100/12, ..., 100 is 1e-4 * 1e4 * (sum of i^2, 0..12) / (13 * 144).
-  Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
-  stretch(0, 0) = 1.01;
-  EXPECT_NEAR(RegistrationRms(stretch, Shift(0, 0), 101, 101).value(),
-              std::sqrt(650.0 / (13 * 144)), 1e-12);
+TEST(CentreHits, TheCloserIsTakenAndTheOtherIsFalse) {
+  const std::vector<LabelledBox> truth = {At(1, 0, 0)};
+  const std::vector<LabelledBox> found = {At(1, 3, 0), At(1, 1, 0)};
+  const FrameMatch match = MatchFrame(truth, found, HitRule::ByCentre());
+  EXPECT_EQ(match.detection_of_truth[0], 1);
+  EXPECT_EQ(match.truth_of_detection[0], FrameMatch::kMiss);
 }
 
-TEST(RegistrationScore, OnlyGroundThatBothSeeCounts) {
-  // Truth moves all but the left half out; the error lies on the right and so is not seen.
-  Eigen::Matrix3d bent = Shift(320, 0);
-  bent(2, 0) = 1e-4;
-  const double all = RegistrationRms(bent, Shift(0, 0), 640, 480).value();
-  const double half = RegistrationRms(bent, Shift(320, 0), 640, 480).value();
-  EXPECT_GT(all, half);
-  EXPECT_EQ(RegistrationRms(bent, Shift(700, 0), 640, 480), std::nullopt);
+TEST(MatchFrame, TiesGoToTheFirst) {
+  const FrameMatch match = MatchFrame({At(1, 0, 0)}, {At(1, 2, 0), At(1, -2, 0)}, 0.05);
+  EXPECT_EQ(match.detection_of_truth[0], 0);
 }
 
-TEST(RegistrationScore, GroundSentBehindTheCameraIsInfinitelyWrong) {
-  Eigen::Matrix3d wild = Eigen::Matrix3d::Identity();
-  wild(2, 0) = -1.0 / 300;
-  EXPECT_EQ(RegistrationRms(wild, Shift(0, 0), 640, 480), std::numeric_limits<double>::infinity());
+TEST(MatchFrame, KeptPairsGoBeforeBetterOnes) {
+  const std::vector<LabelledBox> truth = {At(1, 0, 0)};
+  const std::vector<LabelledBox> found = {At(1, 0, 0), At(1, 5, 0)};
+  const std::vector<FramePair> kept = {{0, 1}};
+  const FrameMatch match = MatchFrame(truth, found, HitRule::ByOverlap(0.05), kept);
+  EXPECT_EQ(match.detection_of_truth[0], 1);
+  EXPECT_EQ(match.truth_of_detection[0], FrameMatch::kMiss);
 }
 
-TEST(RegistrationScore, ConsecutiveErrorsAndDriftByHand) {
-  // Truth: 10 px to the right a frame. Measured: 10, then 13, then 10: one pair is 3 px wrong, and
-  // the end has drifted by 3 px.
-  const std::vector<Eigen::Matrix3d> truth = {Shift(0, 0), Shift(10, 0), Shift(20, 0),
-                                              Shift(30, 0)};
-  const std::vector<Eigen::Matrix3d> measured = {Shift(0, 0), Shift(10, 0), Shift(23, 0),
-                                                 Shift(33, 0)};
-  const RegistrationScore score = ScoreRegistration(measured, truth, 640, 480);
-  ASSERT_EQ(score.rms_px.size(), 3U);
-  EXPECT_NEAR(score.rms_px[0].value(), 0, 1e-9);
-  EXPECT_NEAR(score.rms_px[1].value(), 3, 1e-9);
-  EXPECT_NEAR(score.rms_px[2].value(), 0, 1e-9);
-  EXPECT_EQ(score.pairs, 3);
-  EXPECT_EQ(score.without_ground, 0);
-  EXPECT_NEAR(score.mean_px.value(), 1, 1e-9);
-  EXPECT_NEAR(score.max_px.value(), 3, 1e-9);
-  EXPECT_EQ(score.failures, 1);
-  EXPECT_NEAR(score.drift_px, 3, 1e-9);
-}
-
-TEST(RegistrationScore, TheFirstFrameOfTheMeasurementIsFree) {
-  // Only what happens between frames counts, not where the measurement starts.
-  const std::vector<Eigen::Matrix3d> truth = {Shift(0, 0), Shift(10, 0)};
-  const std::vector<Eigen::Matrix3d> measured = {Shift(5, 5), Shift(15, 5)};
-  const RegistrationScore score = ScoreRegistration(measured, truth, 640, 480);
-  EXPECT_NEAR(score.max_px.value(), 0, 1e-9);
-  EXPECT_NEAR(score.drift_px, 0, 1e-9);
-}
-
-TEST(RegistrationScore, PairsWithoutCommonGroundAreCountedAndLeftOut) {
-  // Truth jumps by more than the picture once; the other pair is 3 px wrong, and so is the mean.
-  const std::vector<Eigen::Matrix3d> truth = {Shift(0, 0), Shift(700, 0), Shift(710, 0)};
-  const std::vector<Eigen::Matrix3d> measured = {Shift(0, 0), Shift(10, 0), Shift(23, 0)};
-  const RegistrationScore score = ScoreRegistration(measured, truth, 640, 480);
-  ASSERT_EQ(score.rms_px.size(), 2U);
-  EXPECT_EQ(score.rms_px[0], std::nullopt);
-  EXPECT_EQ(score.pairs, 1);
-  EXPECT_EQ(score.without_ground, 1);
-  EXPECT_NEAR(score.mean_px.value(), 3, 1e-9);
-  EXPECT_NEAR(score.max_px.value(), 3, 1e-9);
-  EXPECT_EQ(score.failures, 1);
-
-  const RegistrationScore none =
-      ScoreRegistration({Shift(0, 0), Shift(1, 0)}, {Shift(0, 0), Shift(0, 500)}, 640, 480);
-  EXPECT_EQ(none.pairs, 0);
-  EXPECT_EQ(none.without_ground, 1);
-  EXPECT_FALSE(none.mean_px);
-  EXPECT_FALSE(none.max_px);
-}
-
-TEST(RegistrationScore, EmptyAndUnequal) {
-  EXPECT_EQ(ScoreRegistration({}, {}, 640, 480).failures, 0);
-  EXPECT_TRUE(ScoreRegistration({Shift(0, 0)}, {Shift(0, 0)}, 640, 480).rms_px.empty());
-  EXPECT_THROW(ScoreRegistration({Shift(0, 0)}, {}, 640, 480), std::invalid_argument);
+TEST(BoxesByFrame, ComeByNumberAndLeaveOutEmptyFrames) {
+  const std::vector<LabelledBox> truth = {At(7, 0, 0), At(2, 1, 0)};
+  const std::vector<LabelledBox> found = {At(7, 2, 0), At(4, 3, 0), At(7, 4, 0)};
+  const std::vector<FrameBoxes> frames = BoxesByFrame(truth, found);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[0].number, 2);
+  EXPECT_EQ(frames[1].number, 4);
+  EXPECT_TRUE(frames[1].truth.empty());
+  EXPECT_EQ(frames[2].number, 7);
+  ASSERT_EQ(frames[2].detections.size(), 2U);
+  EXPECT_EQ(frames[2].detections[1].box.x, 4);
 }
 
 }  // namespace

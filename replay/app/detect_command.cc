@@ -49,13 +49,15 @@ struct Truth {
   SequenceTruth sequence;
   std::vector<LabelledBox> movers;
   std::vector<Eigen::Matrix3d> first_from_frame;  // empty where the sequence has none
+  std::vector<Eigen::Vector3d> horizons;          // the same
 };
 
 std::optional<Truth> ReadTruth(const DetectSettings& settings) {
   if (settings.truth.empty()) return std::nullopt;
-  Truth truth = {SequenceTruth(settings.truth, settings.frames), {}, {}};
+  Truth truth = {SequenceTruth(settings.truth, settings.frames), {}, {}, {}};
   truth.movers = truth.sequence.Movers();
   if (truth.sequence.HasHomographies()) truth.first_from_frame = truth.sequence.Homographies();
+  truth.horizons = truth.sequence.Horizons();
   return truth;
 }
 
@@ -133,11 +135,22 @@ std::vector<LabelledBox> Boxes(const std::vector<FrameOutcome>& outcomes) {
 }
 
 void PrintScores(const Truth& truth, const std::vector<FrameOutcome>& outcomes) {
-  std::printf("%s\n", Describe(ScoreMotion(truth.movers, Boxes(outcomes)), kThesisOverlap).c_str());
+  const SequenceTruth& sequence = truth.sequence;
+  const MotionTruth motion = {"",
+                              truth.movers,
+                              sequence.frames(),
+                              sequence.width(),
+                              sequence.height(),
+                              sequence.frame_rate_hz(),
+                              truth.first_from_frame};
+  const MotionReport report =
+      ReportMotion(motion, Boxes(outcomes), DefaultOverlaps(MotionProtocol::kWindhover));
+  std::fputs(Describe(report).c_str(), stdout);
   if (truth.first_from_frame.empty()) return;
-  std::printf("%s\n", Describe(ScoreRegistration(FirstFromFrame(outcomes), truth.first_from_frame,
-                                                 truth.sequence.width(), truth.sequence.height()))
-                          .c_str());
+  const RegistrationScore registration =
+      ScoreRegistration(FirstFromFrame(outcomes), truth.first_from_frame, sequence.width(),
+                        sequence.height(), 1, truth.horizons);
+  std::fputs(Describe(registration).c_str(), stdout);
 }
 
 void WriteOverlays(const DetectSettings& settings, const std::vector<FrameOutcome>& outcomes,

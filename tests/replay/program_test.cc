@@ -76,7 +76,7 @@ TEST(Program, MistakesAreOneClearLine) {
   expect("detect nowhere" + out, "does not exist");
   expect("detect nowhere --set k=0" + out, "k");
   expect("detect nowhere --set nonsense=1" + out, "nonsense");
-  expect("score motion --truth nowhere --detections nothing.txt", "cannot be read");
+  expect("score motion --truth nowhere --detections nothing.txt", "does not exist");
   expect("info nowhere", "does not exist");
   expect("info " + folder.path().string(), "is no sequence, video or known set");
   WriteText(folder.path() / "letter.txt", "dear\n");

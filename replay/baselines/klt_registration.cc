@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/baselines/klt_registration.h"
 
-#include <opencv2/calib3d.hpp>
 #include <opencv2/video/tracking.hpp>
 #include <utility>
 
@@ -16,19 +15,18 @@ const cv::Size kWindow(21, 21);
 
 }  // namespace
 
-Eigen::Matrix3d KltRegistration::Register(const cv::Mat& gray) {
-  Eigen::Matrix3d previous_from_frame = Eigen::Matrix3d::Identity();
+std::optional<Eigen::Matrix3d> KltRegistration::Register(const cv::Mat& gray) {
   std::swap(previous_pyramid_, pyramid_);
   cv::buildOpticalFlowPyramid(gray, pyramid_, kWindow, kLevels);
-  if (previous_pyramid_.empty()) {
+  if (grid_.empty()) {
     for (int row = 0; row < kRows; ++row) {
       for (int column = 0; column < kColumns; ++column) {
         grid_.emplace_back((static_cast<float>(column) + 0.5F) * gray.cols / kColumns,
                            (static_cast<float>(row) + 0.5F) * gray.rows / kRows);
       }
     }
-    return previous_from_frame;
   }
+  if (previous_pyramid_.empty()) return std::nullopt;
   cv::calcOpticalFlowPyrLK(pyramid_, previous_pyramid_, grid_, found_, status_, error_, kWindow,
                            kLevels);
   from_.clear();
@@ -38,11 +36,12 @@ Eigen::Matrix3d KltRegistration::Register(const cv::Mat& gray) {
     from_.push_back(grid_[i]);
     to_.push_back(found_[i]);
   }
-  if (from_.size() < 4) return previous_from_frame;
-  const cv::Mat matrix = cv::findHomography(from_, to_, cv::RANSAC, kRansacPx);
-  if (matrix.empty()) return previous_from_frame;
-  for (int i = 0; i < 9; ++i) previous_from_frame(i / 3, i % 3) = matrix.at<double>(i / 3, i % 3);
-  return previous_from_frame;
+  return RansacHomography(from_, to_, kRansacPx);
+}
+
+void KltRegistration::Reset() {
+  previous_pyramid_.clear();
+  pyramid_.clear();
 }
 
 }  // namespace windhover::replay

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "replay/baselines/registration_peer.h"
+
 namespace windhover::replay {
 
-// The peer that registration is measured against: OpenCV's pyramidal Lucas-Kanade tracking of a
-// 16 x 12 grid of points, then RANSAC on a homography. Each frame is registered to its predecessor.
-class KltRegistration {
+// OpenCV's pyramidal Lucas-Kanade tracking of a 16 x 12 grid of points, then RANSAC on a
+// homography.
+class KltRegistration : public RegistrationPeer {
  public:
-  // `gray` is CV_8UC1, always of one size. Returns previous_from_frame with h33 = 1; the identity
-  // for the first frame and where too few points are found again.
-  Eigen::Matrix3d Register(const cv::Mat& gray);
+  std::optional<Eigen::Matrix3d> Register(const cv::Mat& gray) override;
+  void Reset() override;
 
  private:
   std::vector<cv::Mat> previous_pyramid_;

@@ -150,7 +150,9 @@ class KltContestant : public Contestant {
   KltContestant() : Contestant("KLT grid + RANSAC", "peer.klt.fps") {}
   void TimeFrames(const Flight& flight) override {
     KltRegistration klt;
-    TimeRegistration(flight, [&](const cv::Mat& gray) { return klt.Register(gray); });
+    TimeRegistration(flight, [&](const cv::Mat& gray) {
+      return klt.Register(gray).value_or(Eigen::Matrix3d::Identity());
+    });
   }
 };
 

@@ -1,75 +1,100 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 
 #include "replay/app/commands.h"
 #include "replay/app/interrupt.h"
 #include "replay/app/picture_size.h"
+#include "replay/benchmarks/figures.h"
+#include "replay/benchmarks/first_frame.h"
+#include "replay/benchmarks/machine.h"
+#include "replay/benchmarks/motion_benchmark.h"
+#include "replay/benchmarks/registration_benchmark.h"
 #include "replay/benchmarks/speed_benchmark.h"
 #include "replay/format/text_lines.h"
 
 namespace windhover::replay {
 namespace {
 
+constexpr int kQuickFrames = 60;  // of each sequence
+constexpr int kQuickStressPictures = 2;
+
 struct BenchSettings {
+  // Of registration and motion.
+  std::filesystem::path dataset = "B";
+  std::filesystem::path data = "../shared/data";
+  bool quick = false;
+  // Of speed.
   SpeedBenchmarkSettings speed;
   int frames = 0;
   std::string size;
+
+  std::filesystem::path first_frame_of;
   std::filesystem::path json;
 };
 
-std::string ProcessorName() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
+void Say(const std::string& line) {
+  ThrowIfInterrupted();
+  std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-int Cores() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
-
-void WriteJson(const std::filesystem::path& file, const SpeedBenchmarkSettings& settings,
-               const SpeedBenchmarkResult& result) {
-  nlohmann::ordered_json json;
-  json["machine"] = {{"processor", ProcessorName()}, {"cores", Cores()}};
-  json["device"] = result.default_device;
-  json["opencl"] = result.opencl_device;
-  json["plugin"] = result.plugin_file;
-  json["options"] = {{"sequence", settings.plan.number}, {"seed", settings.plan.seed},
-                     {"width", settings.plan.width},     {"height", settings.plan.height},
-                     {"frames", settings.plan.frames},   {"rounds", settings.rounds}};
-  json["figures"] = nlohmann::ordered_json::array();
-  for (const Figure& figure : result.figures) {
-    json["figures"].push_back(
-        {{"name", figure.name}, {"value", figure.value}, {"unit", figure.unit}});
+void Finish(const BenchSettings& settings, const BenchmarkDocument& document) {
+  const MachineInfo machine = ThisMachine();
+  std::printf("%s, %d cores, %.1f GiB; device: %s\n", machine.processor.c_str(), machine.cores,
+              machine.memory_gib, document.device.c_str());
+  for (const FigureTable& table : document.tables) std::printf("\n%s", TableText(table).c_str());
+  if (!document.figures.empty()) std::printf("\n");
+  for (const Figure& figure : document.figures) {
+    std::printf("%s %s%s%s\n", figure.name.c_str(), NumberText(figure.value, 5).c_str(),
+                figure.unit.empty() ? "" : " ", figure.unit.c_str());
   }
-  WriteText(file, json.dump(2) + "\n");
+  for (const std::string& line : document.left_out) std::printf("left out: %s\n", line.c_str());
+  if (!settings.json.empty()) WriteText(settings.json, JsonText(document));
 }
 
-void PrintResult(const SpeedBenchmarkSettings& settings, const SpeedBenchmarkResult& result) {
-  std::printf("%s, %d cores, OpenCL: %s\n", ProcessorName().c_str(), Cores(),
-              result.opencl_device.empty() ? "none" : result.opencl_device.c_str());
-  std::printf("by default: %s\nplugin: %s\n", result.default_device.c_str(),
-              result.plugin_file.c_str());
-  std::printf("%dx%d, 36 tiles, k = 10, %d frames, %d rounds\n\n", settings.plan.width,
-              settings.plan.height, settings.plan.frames, settings.rounds);
-  std::printf("%-32s %9s %10s %9s %9s %8s\n", "", "frames/s", "median ms", "p95 ms", "RMS px",
-              "to KLT");
+void BenchRegistration(const BenchSettings& settings) {
+  CatchInterrupts();
+  RegistrationBenchmarkSettings benchmark;
+  benchmark.dataset = settings.dataset;
+  benchmark.data = settings.data;
+  if (settings.quick) {
+    benchmark.frames = kQuickFrames;
+    benchmark.stress_pictures = kQuickStressPictures;
+  }
+  std::error_code error;
+  benchmark.program = std::filesystem::read_symlink("/proc/self/exe", error);
+  Finish(settings, RunRegistrationBenchmark(benchmark, {Say, ThrowIfInterrupted}));
+}
+
+void BenchMotion(const BenchSettings& settings) {
+  CatchInterrupts();
+  MotionBenchmarkSettings benchmark;
+  benchmark.dataset = settings.dataset;
+  benchmark.data = settings.data;
+  if (settings.quick) benchmark.frames = kQuickFrames;
+  Finish(settings, RunMotionBenchmark(benchmark, {Say, ThrowIfInterrupted}));
+}
+
+FigureTable SpeedTable(const SpeedBenchmarkSettings& settings, const SpeedBenchmarkResult& result) {
+  FigureTable table = {
+      .name = "speed.contestants",
+      .title = fmt::format("{}x{}, 36 tiles, k = 10, {} frames, {} rounds", settings.plan.width,
+                           settings.plan.height, settings.plan.frames, settings.rounds),
+      .columns = {"", "frames/s", "median ms", "p95 ms", "RMS px", "to KLT"},
+      .rows = {},
+      .digits = 3};
   const double klt_fps = result.contestants.front().fps;
   for (const SpeedContestant& one : result.contestants) {
-    const bool pipeline = one.rms_px == 0;
-    std::printf("%-32s %9.1f %10.2f %9.2f %9s %8s\n", one.name.c_str(), one.fps, one.median_ms,
-                one.p95_ms, pipeline ? "-" : fmt::format("{:.3f}", one.rms_px).c_str(),
-                pipeline ? "-" : fmt::format("{:.2f}", one.fps / klt_fps).c_str());
+    table.rows.push_back({one.name, one.fps, one.median_ms, one.p95_ms, TableCell(), TableCell()});
+    if (one.rms_px == 0) continue;  // a pipeline
+    table.rows.back()[4] = one.rms_px;
+    table.rows.back()[5] = one.fps / klt_fps;
   }
+  return table;
 }
 
 void BenchSpeed(BenchSettings settings) {
@@ -77,15 +102,51 @@ void BenchSpeed(BenchSettings settings) {
   if (!settings.size.empty()) {
     ParseSize(settings.size, settings.speed.plan.width, settings.speed.plan.height);
   }
-  settings.speed.threads = Cores();
+  settings.speed.threads = ThisMachine().cores;
   CatchInterrupts();
-  const SpeedBenchmarkResult result =
-      RunSpeedBenchmark(settings.speed, [](const std::string& line) {
-        ThrowIfInterrupted();
-        std::fprintf(stderr, "%s\n", line.c_str());
-      });
-  PrintResult(settings.speed, result);
-  if (!settings.json.empty()) WriteJson(settings.json, settings.speed, result);
+  const SpeedBenchmarkResult result = RunSpeedBenchmark(settings.speed, Say);
+  const SpeedBenchmarkSettings& speed = settings.speed;
+  BenchmarkDocument document;
+  document.device = result.default_device;
+  document.options = {{"opencl", result.opencl_device},
+                      {"plugin", result.plugin_file},
+                      {"sequence", speed.plan.number},
+                      {"seed", std::to_string(speed.plan.seed)},
+                      {"size", fmt::format("{}x{}", speed.plan.width, speed.plan.height)},
+                      {"frames", std::to_string(speed.plan.frames)},
+                      {"rounds", std::to_string(speed.rounds)}};
+  document.figures = result.figures;
+  document.tables = {SpeedTable(speed, result)};
+  std::printf("OpenCL: %s\nplugin: %s\n",
+              result.opencl_device.empty() ? "none" : result.opencl_device.c_str(),
+              result.plugin_file.c_str());
+  Finish(settings, document);
+}
+
+void AddDatasetOptions(CLI::App& command, BenchSettings& settings) {
+  command
+      .add_option("--dataset", settings.dataset,
+                  "Folder of sequences, as 'render --sequence all' makes it")
+      ->capture_default_str();
+  command.add_option("--data", settings.data, "Folder of real sets; what is absent is left out")
+      ->capture_default_str();
+  command.add_flag("--quick", settings.quick, "The first 60 frames of each sequence only");
+  command.add_option("--json", settings.json, "File for figures and tables, for scripts");
+}
+
+void AddSpeedCommand(CLI::App& bench, const std::shared_ptr<BenchSettings>& settings) {
+  settings->speed.plan = FindFlightPlan("flight");
+  CLI::App* speed = bench.add_subcommand("speed",
+                                         "Frames a second of registration alone and of the "
+                                         "whole pipeline, CPU and OpenCL, beside KLT");
+  speed->add_option("--frames", settings->frames, "Frames of the flight; default: as it has")
+      ->check(CLI::Range(84, 100000));
+  speed->add_option("--rounds", settings->speed.rounds, "Times that everything is measured in turn")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  speed->add_option("--size", settings->size, "WIDTHxHEIGHT in px; default 640x480");
+  speed->add_option("--json", settings->json, "File for figures and tables, for scripts");
+  speed->final_callback([settings] { BenchSpeed(*settings); });
 }
 
 }  // namespace
@@ -94,18 +155,20 @@ void AddBenchCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Measure");
   command->require_subcommand(1);
   auto settings = std::make_shared<BenchSettings>();
-  settings->speed.plan = FindFlightPlan("flight");
-  CLI::App* speed = command->add_subcommand("speed",
-                                            "Frames a second of registration alone and of the "
-                                            "whole pipeline, CPU and OpenCL, beside KLT");
-  speed->add_option("--frames", settings->frames, "Frames of the flight; default: as it has")
-      ->check(CLI::Range(84, 100000));
-  speed->add_option("--rounds", settings->speed.rounds, "Times that everything is measured in turn")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  speed->add_option("--size", settings->size, "WIDTHxHEIGHT in px; default 640x480");
-  speed->add_option("--json", settings->json, "File for the figures, for scripts");
-  speed->final_callback([settings] { BenchSpeed(*settings); });
+  CLI::App* registration = command->add_subcommand(
+      "registration", "Accuracy, reach and honesty of registration beside its peers");
+  AddDatasetOptions(*registration, *settings);
+  registration->final_callback([settings] { BenchRegistration(*settings); });
+  CLI::App* motion = command->add_subcommand(
+      "motion", "Precision and recall of motion detection beside its peers");
+  AddDatasetOptions(*motion, *settings);
+  motion->final_callback([settings] { BenchMotion(*settings); });
+  AddSpeedCommand(*command, settings);
+  CLI::App* first_frame = command->add_subcommand("first-frame",
+                                                  "Register the first two frames of a sequence and "
+                                                  "end: what 'registration' times from outside");
+  first_frame->add_option("SEQUENCE", settings->first_frame_of, "Sequence or video")->required();
+  first_frame->final_callback([settings] { RegisterFirstPair(settings->first_frame_of, ""); });
 }
 
 }  // namespace windhover::replay

@@ -5,17 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "replay/benchmarks/figures.h"
 #include "replay/render/flight_plan.h"
 
 namespace windhover::replay {
-
-// One measured number. Names are stable, so that scripts can hold figures against goals; see
-// replay/README.md.
-struct Figure {
-  std::string name;
-  double value = 0;
-  std::string unit;
-};
 
 struct SpeedBenchmarkSettings {
   FlightPlan plan;          // what is played; each frame once a round

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -53,7 +54,8 @@ std::string Content(const std::filesystem::path& file) {
 TEST(Program, HelpAndVersion) {
   EXPECT_EQ(Call("--version").code, 0);
   for (const char* command :
-       {"", "render", "info", "detect", "score motion", "score registration", "bench speed"}) {
+       {"", "render", "info", "detect", "score motion", "score registration", "bench speed",
+        "bench registration", "bench motion", "bench first-frame"}) {
     const Answer answer = Call(std::string(command) + " --help");
     EXPECT_EQ(answer.code, 0) << command;
     EXPECT_THAT(answer.text, HasSubstr("Usage"));
@@ -74,6 +76,8 @@ TEST(Program, MistakesAreOneClearLine) {
   expect("render --size 3x4" + out, "3x4");
   expect("render --size 320" + out, "320");
   expect("detect nowhere" + out, "does not exist");
+  expect("bench motion --dataset nowhere", "nowhere");
+  expect("bench registration --dataset " + folder.path().string(), "holds no sequence");
   expect("detect nowhere --set k=0" + out, "k");
   expect("detect nowhere --set nonsense=1" + out, "nonsense");
   expect("score motion --truth nowhere --detections nothing.txt", "does not exist");
@@ -258,6 +262,41 @@ TEST(Program, WhatIsWrongIsSaidBeforeTheWork) {
   WriteText(out + "2", "a file\n");
   expect(detect + "2", "out2");
   EXPECT_EQ(Content(out + "2"), "a file\n");
+}
+
+// Of one small sequence: that every contestant takes part, and that nothing stands for what is not
+// there.
+TEST(Program, MeasuresADataset) {
+  ::setenv("WINDHOVER_DEVICE", "cpu", 1);
+  const ScratchFolder folder;
+  const std::string dataset = (folder / "B").string();
+  ASSERT_EQ(Call("render --frames 14 --size 320x240 --out " + dataset + "/01").code, 0);
+  const std::string arguments =
+      " --dataset " + dataset + " --data " + (folder / "nowhere").string() + " --json ";
+  const auto measure = [&](const std::string& what) {
+    const std::string file = (folder / (what + ".json")).string();
+    const Answer answer = Call("bench " + what + arguments + file);
+    EXPECT_EQ(answer.code, 0) << answer.text;
+    return Content(file);
+  };
+  const std::string registration = measure("registration");
+  for (const char* figure :
+       {"registration.rms_px.01", "registration.gap10_rms_px.01", "peer.klt.rms_px.01",
+        "peer.orb.rms_px.01", "peer.sift.rms_px.01", "peer.akaze.rms_px.01", "peer.ecc.rms_px.01",
+        "peer.phase_correlate.rms_px.01", "registration.first_frame_s.warm",
+        "registration.table_2_2"}) {
+    EXPECT_THAT(registration, HasSubstr('"' + std::string(figure) + '"'));
+  }
+  EXPECT_THAT(registration, AllOf(Not(HasSubstr("rms_px.mean")), Not(HasSubstr("reach_share")),
+                                  HasSubstr("there is no 02"), HasSubstr("CPU twin")));
+  const std::string motion = measure("motion");
+  for (const char* figure : {"motion.table_6_1", "motion.recall.01", "motion.centre.recall.01",
+                             "motion.frame_differencing.recall.01", "peer.mog2.recall.01"}) {
+    EXPECT_THAT(motion, HasSubstr('"' + std::string(figure) + '"'));
+  }
+  EXPECT_THAT(motion, AllOf(Not(HasSubstr("recall.mean")), Not(HasSubstr("motion.real.")),
+                            HasSubstr("no uavdt-s1301")));
+  ::unsetenv("WINDHOVER_DEVICE");
 }
 
 // Whether there is a picture anywhere below; asked while files come and go.

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/benchmarks/motion_benchmark.h"
+
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "replay/baselines/frame_differencing.h"
+#include "replay/baselines/stabilized_mog2.h"
+#include "replay/benchmarks/dataset.h"
+#include "replay/benchmarks/motion_results.h"
+#include "replay/benchmarks/option_list.h"
+#include "replay/format/format_error.h"
+#include "replay/format/frame_source.h"
+#include "replay/format/truth.h"
+#include "replay/offline/offline_detection.h"
+#include "replay/readers/recording.h"
+
+namespace windhover::replay {
+namespace {
+
+// Figure 6.7.
+constexpr const char* kCurveSequence = "04";
+constexpr int kCurveThresholds[] = {40, 20, 10};  // grey levels
+constexpr int kCurveAreas[] = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+
+constexpr const char* kRealSets[] = {"uavdt-s1301", "uav123-person12", "uav123-building4-static"};
+
+std::vector<LabelledBox> BoxesOf(const std::vector<FrameOutcome>& outcomes) {
+  std::vector<LabelledBox> boxes;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    for (const Detection& detection : outcomes[i].detections) {
+      boxes.push_back({static_cast<int>(i) + 1, -1, detection.box, detection.score});
+    }
+  }
+  return boxes;
+}
+
+OverlapScores ScoresOf(const std::vector<LabelledBox>& truth,
+                       const std::vector<LabelledBox>& found) {
+  OverlapScores scores;
+  for (std::size_t i = 0; i < kOverlaps.size(); ++i) {
+    scores[i] = ScoreMotion(truth, found, kOverlaps[i]);
+  }
+  return scores;
+}
+
+// A peer over one sequence.
+struct PeerRun {
+  explicit PeerRun(std::unique_ptr<MotionPeer> made) : peer(std::move(made)) {}
+
+  std::unique_ptr<MotionPeer> peer;
+  std::vector<LabelledBox> boxes;
+  std::vector<int> areas_px;  // of each box
+
+  void Take(int frame, const cv::Mat& gray, const FrameRegistration& registration) {
+    for (const MovingObject& object : peer->Detect(gray, registration)) {
+      boxes.push_back({frame, -1, object.box});
+      areas_px.push_back(object.area_px);
+    }
+  }
+};
+
+class MotionBenchmark {
+ public:
+  MotionBenchmark(const MotionBenchmarkSettings& settings, const BenchmarkProgress& progress);
+  BenchmarkDocument Run();
+
+ private:
+  std::vector<PeerRun> MakePeers(const std::string& id) const;
+  void MeasureSequence(const DatasetSequence& sequence);
+  void AddCurve(const std::vector<LabelledBox>& truth, const std::vector<PeerRun>& peers);
+  void MeasureRealSet(const std::string& name);
+
+  MotionBenchmarkSettings settings_;
+  BenchmarkProgress progress_;
+  std::shared_ptr<Backend> backend_;
+  MotionResults results_;
+  std::vector<std::string> left_out_;
+};
+
+MotionBenchmark::MotionBenchmark(const MotionBenchmarkSettings& settings,
+                                 const BenchmarkProgress& progress)
+    : settings_(settings), progress_(progress), backend_(Backend::Create(settings.device)) {
+  results_.contestants = {{"motion.", "windhover", {}},
+                          {"motion.centre.", "centre", {}},
+                          {"motion.frame_differencing.", "FD", {}},
+                          {"peer.mog2.", "MOG2", {}}};
+}
+
+// As many as there are contestants after the product's two modes, then those of figure 6.7.
+std::vector<PeerRun> MotionBenchmark::MakePeers(const std::string& id) const {
+  std::vector<PeerRun> peers;
+  peers.emplace_back(std::make_unique<FrameDifferencing>(BackgroundOptions(), MotionOptions()));
+  peers.emplace_back(std::make_unique<StabilizedMog2>(MotionOptions()));
+  if (id != kCurveSequence) return peers;
+  for (const int threshold : kCurveThresholds) {
+    BackgroundOptions background;
+    background.threshold = threshold;
+    MotionOptions motion;
+    motion.min_area_px = 1;
+    peers.emplace_back(std::make_unique<FrameDifferencing>(background, motion));
+  }
+  return peers;
+}
+
+void MotionBenchmark::AddCurve(const std::vector<LabelledBox>& truth,
+                               const std::vector<PeerRun>& peers) {
+  for (std::size_t i = 0; i < std::size(kCurveThresholds); ++i) {
+    const PeerRun& run = peers[peers.size() - std::size(kCurveThresholds) + i];
+    for (const int area : kCurveAreas) {
+      progress_.check();
+      std::vector<LabelledBox> kept;
+      for (std::size_t box = 0; box < run.boxes.size(); ++box) {
+        if (run.areas_px[box] >= area) kept.push_back(run.boxes[box]);
+      }
+      results_.curve.push_back({kCurveThresholds[i], area, ScoreMotion(truth, kept)});
+    }
+  }
+}
+
+void MotionBenchmark::MeasureSequence(const DatasetSequence& sequence) {
+  const int has = ReadSequenceInfo(sequence.folder).frames;
+  const int frames = settings_.frames > 0 ? std::min(settings_.frames, has) : has;
+  const SequenceTruth truth(sequence.folder, frames);
+  const std::vector<LabelledBox> movers = truth.Movers();
+  OfflineOptions centre_options;
+  centre_options.registration.reference = ReferenceMode::kCentre;
+  OfflineDetection anchor(backend_, truth.width(), truth.height(), {});
+  OfflineDetection centre(backend_, truth.width(), truth.height(), centre_options);
+  std::vector<PeerRun> peers = MakePeers(sequence.id);
+  const std::unique_ptr<FrameSource> source = OpenFrames(sequence.folder);
+  std::deque<cv::Mat> waiting;  // gray frames whose registration has not come out
+  std::size_t out = 0;
+  const auto run_peers = [&] {
+    for (; out < anchor.outcomes().size(); ++out) {
+      for (PeerRun& run : peers) {
+        run.Take(static_cast<int>(out) + 1, waiting.front(), anchor.outcomes()[out].registration);
+      }
+      waiting.pop_front();
+    }
+  };
+  for (int frame = 0; frame < frames; ++frame) {
+    progress_.check();
+    if (frame % 50 == 0) {
+      progress_.say("motion " + sequence.id + ": frame " + std::to_string(frame) + " of " +
+                    std::to_string(frames));
+    }
+    const cv::Mat picture = source->Next();
+    cv::cvtColor(picture, waiting.emplace_back(), cv::COLOR_BGR2GRAY);
+    anchor.Push(picture);
+    centre.Push(picture);
+    run_peers();
+  }
+  anchor.Drain();
+  centre.Drain();
+  run_peers();
+  const auto keep = [&](std::size_t contestant, const std::vector<LabelledBox>& boxes) {
+    results_.contestants[contestant].scores[sequence.id] = ScoresOf(movers, boxes);
+  };
+  keep(MotionResults::kAnchor, BoxesOf(anchor.outcomes()));
+  keep(MotionResults::kCentre, BoxesOf(centre.outcomes()));
+  for (std::size_t i = MotionResults::kFrameDifferencing; i < results_.contestants.size(); ++i) {
+    keep(i, peers[i - MotionResults::kFrameDifferencing].boxes);
+  }
+  if (sequence.id == kCurveSequence) AddCurve(movers, peers);
+}
+
+void MotionBenchmark::MeasureRealSet(const std::string& name) {
+  if (!std::filesystem::exists(settings_.data / name)) {
+    left_out_.push_back("there is no " + name + " among the real sets");
+    return;
+  }
+  const Recording recording = OpenRecording(settings_.data / name);
+  const std::unique_ptr<FrameSource> source = recording.open_frames();
+  std::unique_ptr<OfflineDetection> detection;
+  int frames = 0;
+  for (cv::Mat frame = source->Next(); !frame.empty(); frame = source->Next()) {
+    progress_.check();
+    if (frames % 50 == 0) progress_.say("motion on " + name + ": frame " + std::to_string(frames));
+    if (!detection) {
+      detection =
+          std::make_unique<OfflineDetection>(backend_, frame.cols, frame.rows, OfflineOptions());
+    }
+    detection->Push(frame);
+    if (++frames == settings_.frames) break;
+  }
+  if (!detection) throw FormatError(recording.path, "holds no frame");
+  detection->Drain();
+  const std::vector<LabelledBox> boxes = BoxesOf(detection->outcomes());
+  RealSetResult result = {name, frames, static_cast<int>(boxes.size()), {}};
+  std::vector<LabelledBox> truth = recording.Truth();
+  std::erase_if(truth, [&](const LabelledBox& box) { return box.frame > frames; });
+  // Its label is of a building.
+  const bool moves = name != "uav123-building4-static" && !truth.empty();
+  for (std::size_t i = 0; moves && i < kOverlaps.size(); ++i) {
+    result.recall.push_back(*ScoreMotion(truth, boxes, kOverlaps[i]).recall());
+  }
+  results_.real.push_back(std::move(result));
+}
+
+BenchmarkDocument MotionBenchmark::Run() {
+  const std::vector<DatasetSequence> sequences = FindSequences(settings_.dataset);
+  for (const DatasetSequence& sequence : sequences) {
+    if (std::filesystem::exists(MoversPath(sequence.folder))) {
+      MeasureSequence(sequence);
+    } else {
+      left_out_.push_back("sequence " + sequence.id + ": no gt/gt.txt");
+    }
+  }
+  for (const char* name : kRealSets) MeasureRealSet(name);
+  for (const std::string& line : AbsentSequences(sequences)) left_out_.push_back(line);
+  progress_.say("taking the dataset's checksum");
+  return {.device = backend_->device().Describe(),
+          .dataset_sha256 = DatasetSha256(sequences, progress_),
+          .options = OptionList(settings_.frames),
+          .figures = MotionFigures(results_),
+          .tables = MotionTables(results_),
+          .left_out = left_out_};
+}
+
+}  // namespace
+
+BenchmarkDocument RunMotionBenchmark(const MotionBenchmarkSettings& settings,
+                                     const BenchmarkProgress& progress) {
+  return MotionBenchmark(settings, progress).Run();
+}
+
+}  // namespace windhover::replay

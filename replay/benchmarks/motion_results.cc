@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/benchmarks/motion_results.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "replay/benchmarks/dataset.h"
+#include "replay/benchmarks/thesis_results.h"
+
+namespace windhover::replay {
+namespace {
+
+using Ratio = std::optional<double> (MotionScore::*)() const;
+
+// Of each of the ten sequences, without those where it has nothing to divide by; empty where one of
+// them was not measured.
+std::vector<double> TenRatios(const MotionContestant& contestant, std::size_t overlap,
+                              Ratio ratio) {
+  std::vector<double> ratios;
+  for (const std::string& id : TenSequences()) {
+    const auto found = contestant.scores.find(id);
+    if (found == contestant.scores.end()) return {};
+    if (const std::optional<double> value = (found->second[overlap].*ratio)()) {
+      ratios.push_back(*value);
+    }
+  }
+  return ratios;
+}
+
+std::optional<double> Mean(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::optional<double> Least(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return *std::min_element(values.begin(), values.end());
+}
+
+// All boxes of the ten sequences together.
+std::optional<double> PooledF1(const MotionContestant& contestant, std::size_t overlap) {
+  MotionScore all;
+  for (const std::string& id : TenSequences()) {
+    const auto found = contestant.scores.find(id);
+    if (found == contestant.scores.end()) return std::nullopt;
+    all.truth += found->second[overlap].truth;
+    all.detections += found->second[overlap].detections;
+    all.hits += found->second[overlap].hits;
+  }
+  return all.f1();
+}
+
+void AddContestantFigures(const MotionContestant& contestant, std::vector<Figure>& figures) {
+  struct Kind {
+    const char* name;
+    Ratio ratio;
+  };
+  for (const Kind& kind :
+       {Kind{"precision", &MotionScore::precision}, Kind{"recall", &MotionScore::recall}}) {
+    const std::string name = contestant.prefix + kind.name;
+    const std::vector<double> ratios = TenRatios(contestant, 0, kind.ratio);
+    AddFigure(figures, name + ".mean", Mean(ratios));
+    AddFigure(figures, name + ".min", Least(ratios));
+    for (const auto& [id, scores] : contestant.scores) {
+      AddFigure(figures, name + "." + id, (scores[0].*kind.ratio)());
+    }
+  }
+  constexpr const char* kOverlapNames[kOverlaps.size()] = {"f1_005", "f1_025", "f1_05"};
+  for (std::size_t i = 0; i < kOverlaps.size(); ++i) {
+    AddFigure(figures, contestant.prefix + kOverlapNames[i] + ".pooled", PooledF1(contestant, i));
+  }
+  const auto interchange = contestant.scores.find("s1");
+  if (interchange != contestant.scores.end()) {
+    AddFigure(figures, contestant.prefix + "s1.f1_005", interchange->second[0].f1());
+  }
+}
+
+TableCell PercentCell(std::optional<double> share) {
+  if (!share) return {};
+  return 100 * *share;
+}
+
+// Precision and recall in percent at kThesisOverlap, the thesis' beside ours.
+FigureTable PrecisionRecallTable(const MotionResults& results) {
+  FigureTable table = {.name = "motion.table_6_1",
+                       .title = "Table 6.1: precision and recall in % at overlap 5 %",
+                       .columns = {"sequence", "thesis FD P", "R", "thesis P", "R"},
+                       .rows = {},
+                       .digits = 1};
+  for (const MotionContestant& one : results.contestants) {
+    table.columns.push_back(one.title + " P");
+    table.columns.emplace_back("R");
+  }
+  for (const auto& [id, scores] : results.contestants[MotionResults::kAnchor].scores) {
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row.emplace_back(id);
+    if (const std::optional<int> index = ThesisSequence(id)) {
+      for (const ThesisMotion& thesis :
+           {kThesisFrameDifferencing[*index], kThesisFiltering[*index]}) {
+        row.emplace_back(thesis.precision);
+        row.emplace_back(thesis.recall);
+      }
+    } else {
+      row.resize(row.size() + 4);
+    }
+    for (const MotionContestant& one : results.contestants) {
+      const MotionScore& score = one.scores.at(id)[0];
+      row.push_back(PercentCell(score.precision()));
+      row.push_back(PercentCell(score.recall()));
+    }
+  }
+  return table;
+}
+
+FigureTable OverlapTable(const MotionResults& results) {
+  FigureTable table = {.name = "motion.f1",
+                       .title = "F1 in % at overlap 5 %, 25 % and 50 %",
+                       .columns = {"sequence"},
+                       .rows = {},
+                       .digits = 1};
+  for (const MotionContestant& one : results.contestants) {
+    table.columns.insert(table.columns.end(), {one.title + " 5", "25", "50"});
+  }
+  for (const auto& [id, scores] : results.contestants[MotionResults::kAnchor].scores) {
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row.emplace_back(id);
+    for (const MotionContestant& one : results.contestants) {
+      for (const MotionScore& score : one.scores.at(id)) row.push_back(PercentCell(score.f1()));
+    }
+  }
+  return table;
+}
+
+FigureTable CurveTable(const MotionResults& results) {
+  FigureTable table = {
+      .name = "motion.figure_6_7",
+      .title = "Figure 6.7: frame differencing on sequence 4 by threshold and size filter, in %",
+      .columns = {"threshold", "least area px", "precision", "recall"},
+      .rows = {},
+      .digits = 1};
+  for (const CurvePoint& point : results.curve) {
+    table.rows.push_back({point.threshold, point.min_area_px, PercentCell(point.score.precision()),
+                          PercentCell(point.score.recall())});
+  }
+  const auto ours = results.contestants[MotionResults::kAnchor].scores.find("04");
+  if (!table.rows.empty() && ours != results.contestants[MotionResults::kAnchor].scores.end()) {
+    table.rows.push_back({"windhover", TableCell(), PercentCell(ours->second[0].precision()),
+                          PercentCell(ours->second[0].recall())});
+  }
+  return table;
+}
+
+FigureTable RealTable(const MotionResults& results) {
+  FigureTable table = {.name = "motion.real",
+                       .title =
+                           "Real video: boxes a frame; recall of the labelled object in % at "
+                           "overlap 5 %, 25 % and 50 %",
+                       .columns = {"set", "frames", "boxes a frame", "recall 5", "25", "50"},
+                       .rows = {},
+                       .digits = 2};
+  for (const RealSetResult& real : results.real) {
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row.emplace_back(real.name);
+    row.emplace_back(real.frames);
+    row.emplace_back(static_cast<double>(real.boxes) / real.frames);
+    for (const double recall : real.recall) row.emplace_back(100 * recall);
+    row.resize(table.columns.size());
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<Figure> MotionFigures(const MotionResults& results) {
+  std::vector<Figure> figures;
+  for (const MotionContestant& one : results.contestants) AddContestantFigures(one, figures);
+  const std::optional<double> anchor =
+      Mean(TenRatios(results.contestants[MotionResults::kAnchor], 0, &MotionScore::f1));
+  const std::optional<double> centre =
+      Mean(TenRatios(results.contestants[MotionResults::kCentre], 0, &MotionScore::f1));
+  if (anchor && centre) AddFigure(figures, "motion.centre_minus_anchor", *centre - *anchor);
+  constexpr const char* kOverlapNames[kOverlaps.size()] = {"recall_005", "recall_025", "recall_05"};
+  for (const RealSetResult& real : results.real) {
+    const std::string prefix = "motion.real." + real.name + ".";
+    AddFigure(figures, prefix + "boxes_per_frame", static_cast<double>(real.boxes) / real.frames);
+    for (std::size_t i = 0; i < real.recall.size(); ++i) {
+      AddFigure(figures, prefix + kOverlapNames[i], real.recall[i]);
+    }
+  }
+  return figures;
+}
+
+std::vector<FigureTable> MotionTables(const MotionResults& results) {
+  std::vector<FigureTable> tables;
+  for (FigureTable& table : std::array{PrecisionRecallTable(results), OverlapTable(results),
+                                       CurveTable(results), RealTable(results)}) {
+    if (!table.rows.empty()) tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace windhover::replay

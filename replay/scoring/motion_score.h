@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "replay/format/labels.h"

@@ -17,6 +17,7 @@
 #include "replay/format/labels.h"
 #include "replay/format/pending_folder.h"
 #include "replay/format/sequence.h"
+#include "replay/render/compression.h"
 #include "replay/render/parallel.h"
 #include "replay/render/renderer.h"
 
@@ -24,11 +25,12 @@ namespace windhover::replay {
 namespace {
 
 struct RenderSettings {
-  std::string sequence = "flight";
+  std::string sequences = "flight";
   std::filesystem::path out;
   int frames = 0;
   std::string size;
   std::uint64_t seed = 0;
+  std::filesystem::path ground;
   int threads = 0;
 };
 
@@ -46,50 +48,72 @@ void WriteTruth(const std::filesystem::path& folder, const std::vector<FrameTrut
   WriteHomographies(HomographiesPath(folder), homographies);
 }
 
-// Returns with the whole sequence in place, or throws and leaves nothing.
-void RenderInto(const std::filesystem::path& out, const FlightPlan& plan, int threads) {
-  PendingFolder folder(out);
-  const SequenceInfo info = {.name = plan.number + "-" + plan.name,
-                             .rendered_by = kRenderer,
-                             .frame_rate_hz = plan.frame_rate_hz,
-                             .frames = plan.frames,
-                             .width = plan.width,
-                             .height = plan.height};
-  std::filesystem::create_directories(folder.path() / info.image_folder);
-  std::fprintf(stderr, "painting the ground of %s\n", info.name.c_str());
-  const Renderer renderer(plan, threads, ThrowIfInterrupted);
-  std::vector<FrameTruth> truth(plan.frames);
-  Progress progress("rendering", plan.frames);
-  ForEachInParallel(plan.frames, threads, [&](int frame) {
-    ThrowIfInterrupted();
-    const std::filesystem::path file = FramePath(folder.path(), info, frame + 1);
-    if (!cv::imwrite(file.string(), renderer.Frame(frame), {cv::IMWRITE_PNG_COMPRESSION, 1})) {
-      throw FormatError(file, "cannot be written");
-    }
-    truth[frame] = renderer.Truth(frame);
-    progress.Advance();
-  });
+// Pictures are rendered and written on all threads; between, compression takes them in order.
+void WriteFrames(const Renderer& renderer, const std::filesystem::path& folder,
+                 const SequenceInfo& info, int threads, std::vector<FrameTruth>& truth) {
+  std::unique_ptr<Compression> compression;
+  const int quantiser = renderer.plan().sensor.quantiser;
+  if (quantiser > 0) {
+    compression = std::make_unique<Compression>(info.width, info.height, quantiser);
+  }
+  Progress progress(info.name, info.frames);
+  const int batch = 8 * threads;
+  std::vector<cv::Mat> pictures(batch);
+  for (int first = 0; first < info.frames; first += batch) {
+    const int count = std::min(batch, info.frames - first);
+    ForEachInParallel(count, threads, [&](int i) {
+      ThrowIfInterrupted();
+      pictures[i] = renderer.Frame(first + i);
+      truth[first + i] = renderer.Truth(first + i);
+    });
+    for (int i = 0; compression && i < count; ++i) pictures[i] = compression->Pass(pictures[i]);
+    ForEachInParallel(count, threads, [&](int i) {
+      const std::filesystem::path file = FramePath(folder, info, first + i + 1);
+      if (!cv::imwrite(file.string(), pictures[i], {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+        throw FormatError(file, "cannot be written");
+      }
+      progress.Advance();
+    });
+  }
   progress.Finish();
-  WriteTruth(folder.path(), truth);
-  WriteSequenceInfo(folder.path(), info);
-  folder.Commit();
 }
 
-void Render(const RenderSettings& settings) {
-  FlightPlan plan = FindFlightPlan(settings.sequence);
-  if (settings.frames > 0) plan.frames = settings.frames;
+// Returns with the whole sequence in place, or throws and leaves nothing.
+void RenderSequence(FlightPlan plan, const RenderSettings& settings,
+                    const std::filesystem::path& out) {
   if (settings.seed > 0) plan.seed = settings.seed;
   if (!settings.size.empty()) ParseSize(settings.size, plan.width, plan.height);
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const int threads = settings.threads > 0 ? settings.threads : cores;
+  const SequenceInfo info = {
+      .name = plan.number + "-" + plan.name,
+      .rendered_by = kRenderer,
+      .frame_rate_hz = plan.frame_rate_hz,
+      .frames = settings.frames > 0 ? std::min(settings.frames, plan.frames) : plan.frames,
+      .width = plan.width,
+      .height = plan.height};
+  PendingFolder folder(out);
+  std::filesystem::create_directories(folder.path() / info.image_folder);
+  std::fprintf(stderr, "painting the ground of %s\n", info.name.c_str());
+  const Renderer renderer(plan, threads, ThrowIfInterrupted);
+  std::vector<FrameTruth> truth(info.frames);
+  WriteFrames(renderer, folder.path(), info, threads, truth);
+  WriteTruth(folder.path(), truth);
+  WriteSequenceInfo(folder.path(), info);
+  folder.Commit();
+  std::printf("%s\n", out.string().c_str());
+}
 
+void Render(const RenderSettings& settings) {
+  const std::vector<FlightPlan> plans = FindFlightPlans(settings.sequences);
   CatchInterrupts();
-  try {
-    RenderInto(settings.out, plan, threads);
-  } catch (const Interrupted&) {
-    throw Interrupted("nothing half-written is left");
+  for (const FlightPlan& plan : plans) {
+    try {
+      RenderSequence(plan, settings, plans.size() == 1 ? settings.out : settings.out / plan.number);
+    } catch (const Interrupted&) {
+      throw Interrupted("nothing half-written is left");
+    }
   }
-  std::printf("%s\n", settings.out.string().c_str());
 }
 
 }  // namespace
@@ -99,12 +123,17 @@ void AddRenderCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("render", "Render a flight with exact truth as a MOTChallenge sequence");
   command
-      ->add_option("--sequence", settings->sequence,
-                   "Number or name of the flight; 'flight' is the first one")
+      ->add_option("--sequence", settings->sequences,
+                   "Numbers or names, separated by commas; 'all': the ten of dataset B; 'flight': "
+                   "the first one")
       ->capture_default_str();
-  command->add_option("--out", settings->out, "The sequence's folder; appears when it is complete")
+  command
+      ->add_option(
+          "--out", settings->out,
+          "The sequence's folder; that of the dataset where there are several. Each appears "
+          "when it is complete")
       ->required();
-  command->add_option("--frames", settings->frames, "Frames; default: as the flight has")
+  command->add_option("--frames", settings->frames, "Only so many from the start; default: all")
       ->check(CLI::Range(1, 100000));
   command->add_option(
       "--size", settings->size,

@@ -2,7 +2,10 @@
 #include "replay/render/camera.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
+#include "replay/render/path.h"
 #include "replay/render/portable_math.h"
 
 namespace windhover::replay {
@@ -43,6 +46,14 @@ Eigen::Vector2d Camera::Project(const Eigen::Vector3d& point) const {
   return {centre_x + focal_px * seen.x() / seen.z(), centre_y + focal_px * seen.y() / seen.z()};
 }
 
+Eigen::Vector3d Camera::Horizon() const {
+  // The drop along the ray of a pixel is linear in it.
+  const Eigen::Vector3d drop = WorldFromPixel().row(2);
+  const double steepness = drop.head<2>().norm();
+  if (steepness < 1e-12 * std::abs(drop.z())) return Eigen::Vector3d::UnitZ();
+  return drop / steepness;
+}
+
 CameraPath::CameraPath(const CameraPlan& plan, int width, int height, std::uint64_t seed)
     : plan_(plan),
       width_(width),
@@ -63,17 +74,52 @@ double CameraPath::Wobble(int channel, double time) const {
   return sum;
 }
 
+// In [-1, 1]: sines that no frame rate follows, slow enough to stay smooth within an exposure.
+double CameraPath::Vibration(int channel, double time) const {
+  Random random(Mix(seed_, 0x71B7A7E0 + static_cast<std::uint64_t>(channel)));
+  double sum = 0.0;
+  for (const double period : {1.37, 2.23, 3.71}) {
+    sum += Sine(2 * kPi * (time / (period * random.Uniform(0.95, 1.05)) + random.Uniform())) / 3;
+  }
+  return sum;
+}
+
+void CameraPath::Place(double time, Camera& camera) const {
+  Eigen::Vector2d place(plan_.start_x_m, plan_.start_y_m);
+  const double angle =
+      Radians(plan_.kind == PathKind::kOrbit ? plan_.orbit_deg * time : plan_.heading_deg);
+  const Eigen::Vector2d forward(Cosine(angle), Sine(angle));
+  switch (plan_.kind) {
+    case PathKind::kStraight:
+      place += plan_.speed_m * time * forward + plan_.sway_m * Wobble(0, time) * Right(forward);
+      break;
+    case PathKind::kOrbit:
+      place += (plan_.radius_m + plan_.sway_m * Wobble(0, time)) * forward;
+      break;
+    case PathKind::kHover:
+      place += plan_.sway_m * Eigen::Vector2d(Wobble(0, time), Wobble(5, time));
+      break;
+  }
+  camera.x_m = place.x();
+  camera.y_m = place.y();
+  camera.altitude_m = plan_.altitude_m + plan_.climb_m * Wobble(1, time);
+}
+
 Camera CameraPath::At(double time) const {
   Camera camera;
-  camera.x_m = plan_.start_x_m + plan_.speed_m * time;
-  camera.y_m = plan_.sway_m * Wobble(0, time);
-  camera.altitude_m = plan_.altitude_m + plan_.climb_m * Wobble(1, time);
-  const double yaw = Radians(plan_.yaw_rate_deg * (time + 4 * Wobble(2, time)));
-  const double pitch = Radians(plan_.tilt_deg + plan_.attitude_wobble_deg * Wobble(3, time));
-  const double roll = Radians(plan_.attitude_wobble_deg * Wobble(4, time));
+  Place(time, camera);
+  double yaw_deg =
+      plan_.yaw_deg + plan_.yaw_rate_deg * time + plan_.yaw_wobble_deg * Wobble(2, time);
+  if (plan_.kind == PathKind::kOrbit) yaw_deg += plan_.orbit_deg * time - 90;
+  const double shake = plan_.jitter_px * plan_.pixel_m / plan_.altitude_m;  // radians
+  const double pitch = shake * Vibration(0, time) +
+                       Radians(plan_.attitude_wobble_deg * Wobble(3, time) - plan_.tilt_deg);
+  const double roll =
+      shake * Vibration(1, time) + Radians(plan_.attitude_wobble_deg * Wobble(4, time));
   camera.camera_from_world =
-      RotationAbout(1, roll) * RotationAbout(0, pitch) * RotationAbout(2, -yaw);
-  camera.focal_px = focal_px_;
+      RotationAbout(1, roll) * RotationAbout(0, pitch) * RotationAbout(2, -Radians(yaw_deg));
+  const double swing = 0.5 - 0.5 * Cosine(2 * kPi * time / plan_.zoom_period);
+  camera.focal_px = focal_px_ * (1 + (plan_.zoom - 1) * swing);
   camera.centre_x = 0.5 * (width_ - 1);
   camera.centre_y = 0.5 * (height_ - 1);
   return camera;

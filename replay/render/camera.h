@@ -27,6 +27,9 @@ struct Camera {
   Eigen::Matrix3d WorldFromPixel() const;
   // The pixel of a point in front of the camera.
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
+  // (a, b, c): pixels (u, v) see ground where a u + b v + c > 0, and (a, b) has unit length. A
+  // camera that looks straight down has no horizon: (0, 0, 1).
+  Eigen::Vector3d Horizon() const;
 };
 
 // Follows the plan smoothly: any time is allowed, also between and outside the frames.
@@ -36,11 +39,13 @@ class CameraPath {
 
   // `time` in frames.
   Camera At(double time) const;
-  // Size of a ground pixel below the camera at the plan's altitude, m.
-  double pixel_m() const { return plan_.altitude_m / focal_px_; }
+  // The smallest that a ground pixel straight below gets at the plan's altitude, m.
+  double pixel_m() const { return plan_.altitude_m / (focal_px_ * std::max(1.0, plan_.zoom)); }
 
  private:
   double Wobble(int channel, double time) const;
+  double Vibration(int channel, double time) const;
+  void Place(double time, Camera& camera) const;
 
   CameraPlan plan_;
   int width_;

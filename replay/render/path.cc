@@ -22,4 +22,22 @@ Path::Place Path::At(double along, double right) const {
 
 Path Path::Reversed() const { return Path({points_.rbegin(), points_.rend()}); }
 
+Path RoundedPath(const std::vector<Eigen::Vector2d>& corners, double cut) {
+  constexpr int kPieces = 12;  // of each bend, which is a parabola
+  std::vector<Eigen::Vector2d> points = {corners.front()};
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Eigen::Vector2d back = corners[i - 1] - corners[i];
+    const Eigen::Vector2d on = corners[i + 1] - corners[i];
+    const double reach = std::min({cut, 0.49 * back.norm(), 0.49 * on.norm()});
+    const Eigen::Vector2d from = corners[i] + reach * back.normalized();
+    const Eigen::Vector2d to = corners[i] + reach * on.normalized();
+    for (int piece = 0; piece <= kPieces; ++piece) {
+      const double t = static_cast<double>(piece) / kPieces;
+      points.push_back((1 - t) * (1 - t) * from + 2 * t * (1 - t) * corners[i] + t * t * to);
+    }
+  }
+  points.push_back(corners.back());
+  return Path(std::move(points));
+}
+
 }  // namespace windhover::replay

@@ -34,4 +34,8 @@ class Path {
   std::vector<double> at_;
 };
 
+// The line through `corners` with each corner rounded off from `cut` metres before it to `cut`
+// after it, or from half of the shorter side where that is less.
+Path RoundedPath(const std::vector<Eigen::Vector2d>& corners, double cut);
+
 }  // namespace windhover::replay

@@ -102,7 +102,7 @@ Renderer::Renderer(const FlightPlan& plan, int threads, const std::function<void
     : plan_(plan),
       scene_(BuildScene(plan)),
       camera_path_(plan.camera, plan.width, plan.height, plan.seed),
-      traffic_(scene_, plan.frames, plan.frame_rate_hz),
+      traffic_(scene_, plan.traffic_density, plan.frames, plan.frame_rate_hz),
       sensor_(plan.sensor, plan.seed) {
   if (plan.width < 16 || plan.height < 16 || plan.frames < 1) {
     throw std::invalid_argument("a flight needs at least one frame of 16x16 px");
@@ -171,10 +171,14 @@ cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
 }
 
 bool Renderer::Moves(const Traffic::Vehicle& vehicle, int frame) const {
+  // Seen by the camera of `frame` both times, so that only the vehicle's own way counts.
+  const Camera camera = camera_path_.At(frame);
+  const auto seen = [&](double time) {
+    const Eigen::Vector2d spot = traffic_.PoseAt(vehicle, time).position;
+    return camera.Project({spot.x(), spot.y(), 0});
+  };
   const double half = 0.5 * kMoverWindowFrames;
-  const Eigen::Vector2d way = traffic_.PoseAt(vehicle, frame + half).position -
-                              traffic_.PoseAt(vehicle, frame - half).position;
-  return way.norm() >= kMoverTravelPx * camera_path_.pixel_m();
+  return (seen(frame + half) - seen(frame - half)).norm() >= kMoverTravelPx;
 }
 
 Eigen::Matrix3d Renderer::TrueHomography(int frame) const {

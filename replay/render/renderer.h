@@ -30,8 +30,8 @@ struct FrameTruth {
   std::vector<LabelledBox> decoys;
 };
 
-// A vehicle moves in a frame where the way it makes over the ground in the kMoverWindowFrames
-// around that frame is at least kMoverTravelPx nominal ground pixels.
+// A vehicle moves in a frame where its way in the kMoverWindowFrames around that frame, all of it
+// seen by the camera of that frame, is at least kMoverTravelPx long in the picture.
 inline constexpr int kMoverWindowFrames = 10;
 inline constexpr double kMoverTravelPx = 2.0;
 inline constexpr double kLeastVisible = 0.4;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/render/scene.h"
 
+#include <stdexcept>
+
 #include "replay/render/portable_math.h"
 
 namespace windhover::replay {
@@ -48,12 +50,29 @@ VehicleLook RandomVehicle(Random& random) {
   return {VehicleKind::kTruck, look.paint, random.Uniform(7.5, 9.5), 2.45, 3.1};
 }
 
+VehicleLook RandomPerson(Random& random) {
+  static constexpr std::array<Colour, 8> kClothes = {{{210, 208, 204},
+                                                      {48, 44, 44},
+                                                      {108, 106, 104},
+                                                      {120, 86, 58},
+                                                      {64, 58, 146},
+                                                      {98, 104, 110},
+                                                      {70, 96, 70},
+                                                      {150, 168, 178}}};
+  Colour colour = kClothes[random.Below(kClothes.size())];
+  const auto shift = static_cast<float>(random.Uniform(-10, 10));
+  for (float& channel : colour) channel += shift;
+  return {VehicleKind::kPerson, colour, random.Uniform(0.4, 0.6), random.Uniform(0.48, 0.6),
+          random.Uniform(1.6, 1.9)};
+}
+
 Scene BuildScene(const FlightPlan& plan) {
   switch (plan.scene) {
     case SceneKind::kOutskirts:
       return BuildOutskirts(plan);
+    default:
+      throw std::invalid_argument("no builder for the scene of " + plan.name);
   }
-  return {};
 }
 
 }  // namespace windhover::replay

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "replay/render/flight_plan.h"
+#include "replay/render/lane.h"
 #include "replay/render/path.h"
 
 namespace windhover::replay {
@@ -69,7 +70,8 @@ struct Hedge {
   double height = 1.4;  // m
 };
 
-enum class VehicleKind { kCar, kVan, kTruck };
+// A person is a vehicle, too: what can be in the way of a picture is the same for both.
+enum class VehicleKind { kCar, kVan, kTruck, kPerson };
 
 struct VehicleLook {
   VehicleKind kind = VehicleKind::kCar;
@@ -77,6 +79,7 @@ struct VehicleLook {
   double length = 4.4;  // m
   double width = 1.85;
   double height = 1.45;
+  Colour glass = {62, 56, 50};
 };
 
 // A vehicle that never moves.
@@ -86,28 +89,12 @@ struct ParkedVehicle {
   Eigen::Vector2d forward = Eigen::Vector2d::UnitX();
 };
 
-// A line that vehicles follow one behind the other, with the lights on its way.
-struct Lane {
-  struct Light {
-    double at_m = 0.0;          // stop line, along the path
-    double period_s = 12.0;     // green from `green_from_s` on for `green_s`, then red
-    double green_from_s = 0.0;  // may be negative
-    double green_s = 6.0;
-  };
-  Path path;
-  double right_m = 0.0;   // lateral place of the lane
-  double spacing_m = 30;  // mean distance between vehicles
-  double speed_low = 8;   // m/s, range of the speeds that drivers want
-  double speed_high = 16;
-  std::vector<Light> lights;
-};
-
 struct Sun {
   Eigen::Vector3d direction;  // to the sun: (x, y, up), unit length
   float ambient = 0.42F;      // light in full shade as a share of flat ground in the sun
 };
 
-// A world that stands still, and the lanes on which it moves.
+// A world that stands still, and the ways on which it moves.
 struct Scene {
   std::uint64_t seed = 0;
   Sun sun{};
@@ -120,6 +107,7 @@ struct Scene {
   std::vector<Hedge> hedges;
   std::vector<ParkedVehicle> parked;
   std::vector<Lane> lanes;
+  std::vector<Walk> walks;
 };
 
 // The scene below the flight; the same for the same plan.
@@ -138,5 +126,7 @@ class Random;
 // A vehicle as the traffic has it: most are cars, and about one in five hardly differs from
 // asphalt.
 VehicleLook RandomVehicle(Random& random);
+// A person in summer clothes; one in four hardly differs from asphalt.
+VehicleLook RandomPerson(Random& random);
 
 }  // namespace windhover::replay

@@ -64,6 +64,25 @@ void Sensor::Spread(cv::Mat& light) const {
   }
 }
 
+Sensor::Exposure Sensor::ExposureAt(double frame) const {
+  Exposure exposure = {plan_.gain, plan_.bias};
+  for (const ExposureStep& step : plan_.steps) {
+    const double share = std::clamp((frame - step.frame) / step.over, 0.0, 1.0);
+    exposure.gain += share * (step.gain - exposure.gain);
+    exposure.bias += share * (step.bias - exposure.bias);
+  }
+  return exposure;
+}
+
+std::vector<float> Sensor::ColumnLevels(int width) const {
+  std::vector<float> levels(width);
+  for (int x = 0; x < width; ++x) {
+    levels[x] = static_cast<float>(plan_.column_sigma) *
+                NormalFromBits(Mix(seed_, 0xC0103A + static_cast<std::uint64_t>(x)));
+  }
+  return levels;
+}
+
 cv::Mat Sensor::Expose(cv::Mat& light, int frame) const {
   Spread(light);
   // The standard deviation of the noise that the colours share, at each whole grey level.
@@ -72,20 +91,35 @@ cv::Mat Sensor::Expose(cv::Mat& light, int frame) const {
     sigma[value] = static_cast<float>(
         std::sqrt(plan_.read_sigma * plan_.read_sigma + plan_.shot_gain * value));
   }
+  const Exposure exposure = ExposureAt(frame);
+  const auto bias = static_cast<float>(exposure.bias);
   const auto chroma = static_cast<float>(plan_.chroma_sigma);
+  const std::vector<float> columns = ColumnLevels(light.cols);
+  const double half_diagonal2 = 0.25 * (light.cols * light.cols + light.rows * light.rows);
   const std::uint64_t key = Mix(seed_, 0x5E9502 + static_cast<std::uint64_t>(frame));
   cv::Mat picture(light.size(), CV_8UC3);
   for (int y = 0; y < light.rows; ++y) {
     const auto* in = light.ptr<float>(y);
     auto* out = picture.ptr<std::uint8_t>(y);
+    const double dy = y - 0.5 * (light.rows - 1);
     for (int x = 0; x < light.cols; ++x) {
+      const double dx = x - 0.5 * (light.cols - 1);
+      const auto gain = static_cast<float>(
+          exposure.gain * (1 - plan_.vignetting * (dx * dx + dy * dy) / half_diagonal2));
+      std::array<float, 3> value{};
+      for (int c = 0; c < 3; ++c) value[c] = gain * in[3 * x + c] + bias + columns[x];
+      if (plan_.grey) value.fill(0.114F * value[0] + 0.587F * value[1] + 0.299F * value[2]);
       std::uint64_t bits = Mix(key + (static_cast<std::uint64_t>(y) << 32) + x);
-      const float green = std::clamp(in[3 * x + 1], 0.0F, 255.0F);
-      const float shared = sigma[static_cast<int>(green)] * NormalFromBits(bits);
+      const auto level = static_cast<int>(std::clamp(value[1], 0.0F, 255.0F));
+      const float shared = sigma[level] * NormalFromBits(bits);
       for (int c = 0; c < 3; ++c) {
-        bits = Mix(bits);
-        const float value = in[3 * x + c] + shared + chroma * NormalFromBits(bits);
-        out[3 * x + c] = static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F) + 0.5F);
+        float noise = shared;
+        if (!plan_.grey) {
+          bits = Mix(bits);
+          noise += chroma * NormalFromBits(bits);
+        }
+        out[3 * x + c] =
+            static_cast<std::uint8_t>(std::clamp(value[c] + noise, 0.0F, 255.0F) + 0.5F);
       }
     }
   }

@@ -9,8 +9,8 @@
 
 namespace windhover::replay {
 
-// From the light that falls on each pixel to 8 bits: point spread, shot and read noise, rounding.
-// Light and noise are counted in the grey levels that come out; there is no tone curve between.
+// From the light that falls on each pixel to 8 bits: vignetting, point spread, exposure, shot and
+// read noise, rounding. Light and noise are counted in grey levels; there is no tone curve between.
 class Sensor {
  public:
   Sensor(const SensorPlan& plan, std::uint64_t seed);
@@ -19,8 +19,17 @@ class Sensor {
   // seed and the frame's number.
   cv::Mat Expose(cv::Mat& light, int frame) const;
 
+  struct Exposure {
+    double gain;
+    double bias;
+  };
+  // Grey levels become gain * light + bias in a frame.
+  Exposure ExposureAt(double frame) const;
+
  private:
   void Spread(cv::Mat& light) const;
+  // What each column adds in every frame.
+  std::vector<float> ColumnLevels(int width) const;
 
   SensorPlan plan_;
   std::uint64_t seed_;

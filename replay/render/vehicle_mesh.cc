@@ -7,7 +7,6 @@
 namespace windhover::replay {
 namespace {
 
-constexpr Colour kGlass = {62, 56, 50};
 constexpr double kClearance = 0.25;  // m under the body
 
 // A box that tapers upwards; shares of the vehicle's half length and half width.
@@ -80,16 +79,21 @@ void AppendFaces(const VehicleLook& look, const VehiclePose& pose, const Sun& su
   switch (look.kind) {
     case VehicleKind::kCar:
       skin.Add({kClearance, 0.88, -1, 1, -0.97, 0.96, 1, 0.94}, paint, paint);
-      skin.Add({0.88, top, -0.72, 0.36, -0.46, 0.02, 0.9, 0.72}, kGlass, paint);
+      skin.Add({0.88, top, -0.72, 0.36, -0.46, 0.02, 0.9, 0.72}, look.glass, paint);
       break;
     case VehicleKind::kVan:
       skin.Add({kClearance, 1.05, -1, 1, -1, 0.96, 1, 1}, paint, paint);
       skin.Add({1.05, top, -1, 0.72, -0.98, 0.42, 0.98, 0.9}, paint, paint);
-      skin.Add({1.05, top - 0.25, 0.5, 0.75, 0.4, 0.5, 0.9, 0.84}, kGlass, paint);
+      skin.Add({1.05, top - 0.25, 0.5, 0.75, 0.4, 0.5, 0.9, 0.84}, look.glass, paint);
       break;
     case VehicleKind::kTruck:
       skin.Add({0.5, 2.4, 0.62, 1, 0.66, 0.96, 0.98, 0.92}, paint, paint);
       skin.Add({0.9, top, -1, 0.55, -1, 0.55, 1, 1}, paint, Between(paint, {190, 190, 188}, 0.6F));
+      break;
+    case VehicleKind::kPerson:
+      skin.Add({0.05, 0.85, -0.8, 0.8, -0.6, 0.6, 0.55, 0.7}, look.glass, look.glass);
+      skin.Add({0.85, top - 0.25, -0.6, 0.6, -0.5, 0.5, 0.8, 1.0}, paint, paint);
+      skin.Add({top - 0.25, top, -0.4, 0.4, -0.4, 0.4, 0.4, 0.35}, {64, 78, 98}, {40, 52, 70});
       break;
   }
 }

@@ -190,7 +190,8 @@ class Roads {
         const double on = to.dot(place.forward);
         if (on < -0.5 * kStride || on >= 0.5 * kStride) continue;
         if (std::abs(to.dot(Right(place.forward))) > side) continue;
-        nearest = std::min(nearest, ahead + on - 0.5 * driver.look.length);
+        const double gap = ahead + on - 0.5 * driver.look.length;
+        if (gap >= 0) nearest = std::min(nearest, gap);
       }
     }
     return nearest;

@@ -277,7 +277,7 @@ Scene CrossRoads() {
   scene.seed = 5;
   scene.lanes.push_back({Path({{-300, 0}, {300, 0}}), 1.8, 45, 10, 15, {{285, 14, 0, 8}}, {}, {}});
   scene.lanes.push_back(
-      {RoundedPath({{-300, 0}, {0, 0}, {0, 200}}, 14), 1.8, 150, 9, 13, {}, {{400, 3, 1}}, {}});
+      {RoundedPath({{-300, 0}, {0, 0}, {0, 200}}, 14), 1.8, 90, 9, 13, {}, {{400, 3, 1}}, {}});
   scene.lanes.push_back({Path({{0, -200}, {0, 300}}), 1.8, 140, 8, 11, {}, {}, {}});
   return scene;
 }

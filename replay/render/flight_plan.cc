@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/render/flight_plan.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace windhover::replay {
 namespace {
 
-// Sequence numbers below this are of the ten that "all" stands for.
+// Numbers below this are of the ten that "all" stands for.
 constexpr const char* kAfterTheTen = "11";
 
-FlightPlan Outskirts() {
-  FlightPlan plan;
-  plan.number = "01";
-  plan.name = "outskirts";
-  plan.frames = 420;
-  return plan;
-}
-
 }  // namespace
-
-const std::vector<FlightPlan>& FlightPlans() {
-  static const std::vector<FlightPlan> plans = {Outskirts()};
-  return plans;
-}
 
 FlightPlan FindFlightPlan(const std::string& name) {
   if (name == "flight") return FlightPlans().front();

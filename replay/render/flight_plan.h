@@ -61,7 +61,7 @@ struct SensorPlan {
   double vignetting = 0.0;      // share of the light that the corners lose
   double gain = 1.0;            // grey levels: gain * light + bias, until the first step
   double bias = 0.0;
-  std::vector<ExposureStep> steps;  // in order of time, none before the one before has ended
+  std::vector<ExposureStep> steps{};  // in order of time, none before the one before has ended
   // Noise variance in grey levels squared: read_sigma^2 + shot_gain * value.
   double read_sigma = 1.7;
   double shot_gain = 0.03;

@@ -66,10 +66,35 @@ VehicleLook RandomPerson(Random& random) {
           random.Uniform(1.6, 1.9)};
 }
 
+VehicleLook ThermalLook(VehicleLook look, double warm, Random& random) {
+  double level = random.Uniform(88, 110);
+  double glass = level - 8;
+  if (random.Chance(warm)) {
+    const bool mirrors = random.Chance(0.3);
+    level = mirrors ? random.Uniform(48, 66) : random.Uniform(136, 180);
+    glass = mirrors ? level + 45 : level - 22;
+  }
+  look.paint.fill(static_cast<float>(level));
+  look.glass.fill(static_cast<float>(glass));
+  return look;
+}
+
 Scene BuildScene(const FlightPlan& plan) {
   switch (plan.scene) {
     case SceneKind::kOutskirts:
       return BuildOutskirts(plan);
+    case SceneKind::kCountry:
+      return BuildCountry(plan);
+    case SceneKind::kDunes:
+      return BuildDunes(plan);
+    case SceneKind::kValley:
+      return BuildValley(plan);
+    case SceneKind::kHarbour:
+      return BuildHarbour(plan);
+    case SceneKind::kHighway:
+      return BuildHighway(plan);
+    case SceneKind::kSuburb:
+      return BuildSuburb(plan);
     default:
       throw std::invalid_argument("no builder for the scene of " + plan.name);
   }

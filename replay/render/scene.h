@@ -108,6 +108,8 @@ struct Scene {
   std::vector<ParkedVehicle> parked;
   std::vector<Lane> lanes;
   std::vector<Walk> walks;
+  // Seen by its warmth: colours are grey levels of a thermal camera.
+  bool thermal = false;
 };
 
 // The scene below the flight; the same for the same plan.
@@ -116,6 +118,13 @@ Scene BuildScene(const FlightPlan& plan);
 // What BuildScene calls for SceneKind::kOutskirts: a four-lane road with a residential side, a side
 // of commerce and fields, and streets that cross it.
 Scene BuildOutskirts(const FlightPlan& plan);
+
+Scene BuildCountry(const FlightPlan& plan);  // one road between fields, hedges and farms
+Scene BuildDunes(const FlightPlan& plan);    // sand and planted forest, a track between
+Scene BuildValley(const FlightPlan& plan);   // a road through villages, seen to the horizon
+Scene BuildHarbour(const FlightPlan& plan);  // sheds and containers by night, as warmth
+Scene BuildHighway(const FlightPlan& plan);  // two carriageways, a service road, works
+Scene BuildSuburb(const FlightPlan& plan);   // streets of houses with fields between
 
 // `share` of the way from a to b.
 inline Colour Between(const Colour& a, const Colour& b, float share) {
@@ -128,5 +137,8 @@ class Random;
 VehicleLook RandomVehicle(Random& random);
 // A person in summer clothes; one in four hardly differs from asphalt.
 VehicleLook RandomPerson(Random& random);
+// As a thermal camera sees it, `warm` with that probability: brighter than the ground, or darker
+// where its skin mirrors the cold sky; else hardly different from the ground.
+VehicleLook ThermalLook(VehicleLook look, double warm, Random& random);
 
 }  // namespace windhover::replay

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "replay/render/drivers.h"
+#include "replay/render/portable_math.h"
 #include "replay/render/walkers.h"
 
 namespace windhover::replay {
@@ -18,6 +19,10 @@ Traffic::Traffic(const Scene& scene, double density, int frames, double frame_ra
   vehicles_ = DriveLanes(scene.lanes, density, scene.seed, clock);
   std::vector<Vehicle> people = FollowWalks(scene.walks, density, scene.seed, clock);
   std::move(people.begin(), people.end(), std::back_inserter(vehicles_));
+  for (std::size_t i = 0; scene.thermal && i < vehicles_.size(); ++i) {
+    Random random(Mix(scene.seed, 0x7E3A + i));
+    vehicles_[i].look = ThermalLook(vehicles_[i].look, 0.85, random);
+  }
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     vehicles_[i].id = static_cast<std::int64_t>(i) + 1;
   }

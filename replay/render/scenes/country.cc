@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <utility>
+
+#include "replay/render/portable_math.h"
+#include "replay/render/scene.h"
+#include "replay/render/scenes/settlement.h"
+
+namespace windhover::replay {
+namespace {
+
+using Eigen::Vector2d;
+
+// The map, in metres: one road along x near y = 0, fields of unequal size on both sides.
+constexpr double kWest = -160;
+constexpr double kAhead = 520;  // that the camera sees beyond the end of its flight
+constexpr double kReach = 330;  // fields to either side of the road
+constexpr double kRoadWidth = 6.4;
+
+class Country {
+ public:
+  explicit Country(const FlightPlan& plan)
+      : pieces_(plan.seed, scene_),
+        random_(Mix(plan.seed, 0xC0127)),
+        east_(plan.camera.start_x_m + plan.camera.speed_m * plan.frames + kAhead) {
+    scene_.seed = plan.seed;
+    scene_.sun.direction = Eigen::Vector3d(0.52, 0.58, 0.8).normalized();
+    scene_.meadow = {62, 112, 102};
+  }
+
+  Scene Build() {
+    BuildFields();
+    BuildRoad();
+    BuildFarms();
+    BuildWoods();
+    return std::move(scene_);
+  }
+
+ private:
+  static double RoadY(double x) { return 9 * Sine(x / 120) + 3 * Sine(x / 47 + 2); }
+
+  // Strips of fields across the road's direction, each cut a few times, with hedges between some.
+  void BuildFields() {
+    for (const double side : {-1.0, 1.0}) {
+      for (double x = kWest; x < east_;) {
+        const double length = random_.Uniform(55, 120);
+        const double slant = random_.Uniform(-0.16, 0.16);
+        const Vector2d away = Vector2d(slant, side).normalized();
+        for (double from = 16; from < kReach;) {
+          const double depth = random_.Uniform(50, 130);
+          const Vector2d centre =
+              Vector2d(x + 0.5 * length, RoadY(x + 0.5 * length)) + (from + 0.5 * depth) * away;
+          AddField(centre, away, length - random_.Uniform(1, 4), depth - random_.Uniform(1, 4));
+          from += depth;
+        }
+        x += length;
+      }
+    }
+  }
+
+  void AddField(const Vector2d& centre, const Vector2d& away, double length, double depth) {
+    if (random_.Chance(0.16)) return;  // pasture
+    const bool along_road = random_.Chance(0.5);
+    const Vector2d forward = along_road ? Right(away) : away;
+    pieces_.AddField({centre, forward, along_road ? length : depth, along_road ? depth : length});
+    if (random_.Chance(0.4)) {
+      scene_.hedges.push_back({{centre + 0.5 * length * Right(away), away, depth - 6, 1.6}, 1.8});
+      for (int i = random_.Below(4); i > 0; --i) {
+        pieces_.AddTree(
+            centre + 0.5 * length * Right(away) + random_.Uniform(-0.5, 0.5) * depth * away,
+            random_.Uniform(2.0, 4.4));
+      }
+    }
+    if (random_.Chance(0.14)) {  // a tree that was left standing
+      pieces_.AddTree(centre + random_.Uniform(-0.3, 0.3) * depth * away,
+                      random_.Uniform(2.6, 4.8));
+    }
+  }
+
+  void BuildRoad() {
+    const Path road = LineAlongX(kWest - 300, east_ + 200, RoadY);
+    scene_.roads.push_back({road, kRoadWidth, 2, 0, true});
+    scene_.lanes.push_back({road, 0.25 * kRoadWidth, 150, 18, 25, {}, {}, {}});
+    scene_.lanes.push_back({road.Reversed(), 0.25 * kRoadWidth, 420, 16, 23, {}, {}, {}});
+    pieces_.AddTreeRow(road, 6.2, 17, 1.8, 3.4);
+    pieces_.AddTreeRow(road, -6.8, 41, 1.4, 3.0);
+    for (double x = kWest + random_.Uniform(40, 120); x < east_; x += random_.Uniform(140, 260)) {
+      BuildTrack(x);
+    }
+  }
+
+  // A way between the fields; now and then a tractor crosses the road on it.
+  void BuildTrack(double x) {
+    const double slant = random_.Uniform(-0.2, 0.2);
+    const Path track({Vector2d(x - slant * kReach, RoadY(x) - kReach), Vector2d(x, RoadY(x)),
+                      Vector2d(x + slant * kReach, RoadY(x) + kReach)});
+    for (const std::size_t i : {0, 1}) {
+      const Vector2d a = track.points()[i];
+      const Vector2d b = track.points()[i + 1];
+      scene_.plots.push_back({{0.5 * (a + b), (b - a).normalized(), (b - a).norm(), 3.4},
+                              GroundKind::kGravel,
+                              {112, 134, 150}});
+    }
+  }
+
+  void BuildFarms() {
+    for (double x = kWest + 130; x < east_; x += random_.Uniform(190, 330)) {
+      const double side = random_.Chance(0.5) ? 1 : -1;
+      const Vector2d centre(x, RoadY(x) + side * random_.Uniform(48, 85));
+      pieces_.AddFarm(centre, Vector2d(1, random_.Uniform(-0.3, 0.3)).normalized());
+      const Vector2d gate(x, RoadY(x));
+      scene_.plots.push_back(
+          {{0.5 * (centre + gate), (centre - gate).normalized(), (centre - gate).norm(), 3.6},
+           GroundKind::kGravel,
+           {116, 136, 150}});
+    }
+  }
+
+  void BuildWoods() {
+    for (double x = kWest; x < east_; x += random_.Uniform(110, 240)) {
+      const double side = random_.Chance(0.5) ? 1 : -1;
+      const double length = random_.Uniform(40, 110);
+      const double width = random_.Uniform(30, 70);
+      const Area area = {{x, side * random_.Uniform(120, 290)},
+                         Vector2d(1, random_.Uniform(-0.4, 0.4)).normalized(),
+                         length,
+                         width};
+      pieces_.AddWood(area, static_cast<int>(length * width / 22), 2.2, 4.2);
+    }
+  }
+
+  Scene scene_;
+  Settlement pieces_;
+  Random random_;
+  double east_;
+};
+
+}  // namespace
+
+Scene BuildCountry(const FlightPlan& plan) { return Country(plan).Build(); }
+
+}  // namespace windhover::replay

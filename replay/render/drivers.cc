@@ -9,7 +9,7 @@
 
 namespace windhover::replay {
 
-double Lane::HeightAt(double along) const {
+double HeightOfWay(const std::vector<HeightKnot>& knots, double along) {
   if (knots.empty()) return 0.0;
   if (along <= knots.front().at_m) return knots.front().height_m;
   for (std::size_t i = 1; i < knots.size(); ++i) {

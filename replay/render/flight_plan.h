@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,10 @@ struct FlightPlan {
   double frame_rate_hz = 25.0;
   std::uint64_t seed = 1;
   double traffic_density = 1.0;  // vehicles and people for each that the scene has by itself
+  // What the ground looks like instead of what the scene paints, and its size on the map; empty:
+  // as the scene has it. CV_8UC3, blue first.
+  cv::Mat ground;
+  double ground_pixel_m = 0.05;
   CameraPlan camera;
   SensorPlan sensor;
 };

@@ -11,19 +11,35 @@ constexpr Colour kOldAsphalt = {122, 123, 123};
 constexpr Colour kPavement = {140, 146, 150};
 constexpr Colour kLine = {214, 214, 210};
 
-float Wrapped(float value, float period) { return value - period * std::floor(value / period); }
-
+// What lies where nothing else does: grass in the plain, sand where there is relief.
 void PaintMeadow(const Scene& scene, const Strip& strip) {
   const auto seed = static_cast<std::uint32_t>(scene.seed) * 977U;
-  const Colour dry = {scene.meadow[0] + 22, scene.meadow[1] + 18, scene.meadow[2] + 38};
+  const bool sand = scene.relief.height_m > 0;
+  const float patches = sand ? 10 : 22;
+  const Colour dry = {scene.meadow[0] + patches, scene.meadow[1] + 0.8F * patches,
+                      scene.meadow[2] + 1.7F * patches};
+  const float contrast = sand ? 0.09F : 0.26F;
   for (int y = 0; y < strip.rows; ++y) {
-    const auto my = static_cast<float>(strip.origin.y() + (strip.first_row + y) * strip.texel_m);
+    const auto my = static_cast<float>((strip.first_y + y) * strip.texel_m);
     for (int x = 0; x < strip.width; ++x) {
-      const auto mx = static_cast<float>(strip.origin.x() + x * strip.texel_m);
+      const auto mx = static_cast<float>((strip.first_x + x) * strip.texel_m);
+      const std::size_t i = static_cast<std::size_t>(y) * strip.width + x;
       const float drought = 0.5F + 0.5F * Texture(mx, my, 38, 9, 2.3F, seed);
-      const float light = 1 + 0.26F * Texture(mx, my, 4.1F, 0.9F, 0.3F, seed + 7);
-      strip.colours[static_cast<std::size_t>(y) * strip.width + x] =
-          Paint(Between(scene.meadow, dry, drought), light);
+      const float light = 1 + contrast * Texture(mx, my, 4.1F, 0.9F, 0.3F, seed + 7);
+      strip.colours[i] = Paint(Between(scene.meadow, dry, drought), light);
+      if (sand) strip.heights[i] = HeightOf(scene.GroundAt(mx, my));
+    }
+  }
+}
+
+void PaintPhoto(const Scene& scene, const GroundPhoto& photo, const Strip& strip) {
+  for (int y = 0; y < strip.rows; ++y) {
+    const double my = (strip.first_y + y) * strip.texel_m;
+    for (int x = 0; x < strip.width; ++x) {
+      const double mx = (strip.first_x + x) * strip.texel_m;
+      const std::size_t i = static_cast<std::size_t>(y) * strip.width + x;
+      strip.colours[i] = Paint(photo.At(mx, my, strip.texel_m), 1);
+      strip.heights[i] = HeightOf(scene.GroundAt(static_cast<float>(mx), static_cast<float>(my)));
     }
   }
 }
@@ -80,6 +96,43 @@ void PaintGravel(const Plot& plot, std::uint32_t seed, const Strip& strip) {
   });
 }
 
+// Slabs of stone, each of its own tone, in a grid or in rings of a pattern.
+void PaintSlabs(const Plot& plot, std::uint32_t seed, const Strip& strip) {
+  const auto side = static_cast<float>(plot.row_m);
+  ForEachSpot(strip, plot.area, [&](Spot spot) {
+    const float row = std::floor(spot.across / side);
+    const float shift = 0.5F * side * (row - 2 * std::floor(row / 2));
+    const float column = std::floor((spot.along + shift) / side);
+    const float tone = Noise(column * 1.37F + 0.5F, row * 1.71F + 0.5F, seed + 3);
+    const bool band = Wrapped(column, 8) < 1 || Wrapped(row, 8) < 1;
+    float light = 1 + 0.09F * tone + 0.08F * Texture(spot.x, spot.y, 11, 2.1F, 0.2F, seed);
+    if (band) light -= 0.16F;
+    const float joint = std::min(Wrapped(spot.along + shift, side), Wrapped(spot.across, side));
+    if (joint < 0.06F) light -= 0.15F;
+    spot.colour = Paint(plot.colour, light);
+  });
+}
+
+void PaintForestFloor(const Plot& plot, std::uint32_t seed, const Strip& strip) {
+  ForEachSpot(strip, plot.area, [&](Spot spot) {
+    const float edge = static_cast<float>(std::min(plot.area.length / 2 - std::abs(spot.along),
+                                                   plot.area.width / 2 - std::abs(spot.across)));
+    if (edge < 3 + 3 * Noise(spot.x / 5, spot.y / 5, seed + 8)) return;
+    const float moss = 0.5F + 0.5F * Texture(spot.x, spot.y, 12, 3, 0.8F, seed + 4);
+    const Colour needles = {plot.colour[0] + 4, plot.colour[1] + 8, plot.colour[2] + 26};
+    spot.colour = Paint(Between(plot.colour, needles, moss),
+                        1 + 0.3F * Texture(spot.x, spot.y, 2.2F, 0.7F, 0.25F, seed));
+  });
+}
+
+void PaintWater(const Plot& plot, std::uint32_t seed, const Strip& strip) {
+  ForEachSpot(strip, plot.area, [&](Spot spot) {
+    spot.colour = Paint(plot.colour, 1 + 0.12F * Texture(spot.x, spot.y, 30, 9, 3, seed));
+    spot.surface = Terrain::kWater;
+    spot.height = 0;
+  });
+}
+
 void PaintPlot(const Plot& plot, std::uint32_t seed, const Strip& strip) {
   switch (plot.kind) {
     case GroundKind::kLawn:
@@ -90,11 +143,17 @@ void PaintPlot(const Plot& plot, std::uint32_t seed, const Strip& strip) {
       return PaintPaved(plot, seed, strip);
     case GroundKind::kGravel:
       return PaintGravel(plot, seed, strip);
+    case GroundKind::kSlabs:
+      return PaintSlabs(plot, seed, strip);
+    case GroundKind::kForest:
+      return PaintForestFloor(plot, seed, strip);
+    case GroundKind::kWater:
+      return PaintWater(plot, seed, strip);
   }
 }
 
-// How bright asphalt is at a spot `across` from the middle of the road: worn by wheels, patched,
-// cracked.
+}  // namespace
+
 Colour AsphaltAt(float x, float y, float along, float across, float lane_width,
                  std::uint32_t seed) {
   const float age = 0.5F + 0.5F * Noise(along / 45, across / 9, seed + 21);
@@ -111,6 +170,8 @@ Colour AsphaltAt(float x, float y, float along, float across, float lane_width,
   for (float& channel : colour) channel *= light;
   return colour;
 }
+
+namespace {
 
 bool IsLine(float along, float across, const Road& road, float lane_width) {
   const auto half = static_cast<float>(road.width / 2);
@@ -185,16 +246,22 @@ void PaintJunction(const Junction& junction, std::uint32_t seed, const Strip& st
 
 }  // namespace
 
-void PaintGround(const Scene& scene, const Strip& strip) {
+void PaintGround(const Scene& scene, const GroundPhoto* photo, const Strip& strip) {
+  if (photo != nullptr) return PaintPhoto(scene, *photo, strip);
   const auto seed = static_cast<std::uint32_t>(scene.seed) * 31U;
   PaintMeadow(scene, strip);
-  for (std::size_t i = 0; i < scene.plots.size(); ++i) {
-    PaintPlot(scene.plots[i], seed + static_cast<std::uint32_t>(i) * 101U, strip);
+  // Water last: what lies under water is not seen.
+  for (const bool water : {false, true}) {
+    for (std::size_t i = 0; i < scene.plots.size(); ++i) {
+      if ((scene.plots[i].kind == GroundKind::kWater) != water) continue;
+      PaintPlot(scene.plots[i], seed + static_cast<std::uint32_t>(i) * 101U, strip);
+    }
+    if (water) break;
+    for (std::size_t i = scene.roads.size(); i-- > 0;) {
+      PaintRoad(scene.roads[i], seed + static_cast<std::uint32_t>(i) * 211U, strip);
+    }
+    for (const Junction& junction : scene.junctions) PaintJunction(junction, seed, strip);
   }
-  for (std::size_t i = scene.roads.size(); i-- > 0;) {
-    PaintRoad(scene.roads[i], seed + static_cast<std::uint32_t>(i) * 211U, strip);
-  }
-  for (const Junction& junction : scene.junctions) PaintJunction(junction, seed, strip);
 }
 
 }  // namespace windhover::replay

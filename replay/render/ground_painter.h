@@ -4,25 +4,29 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "replay/render/ground_photo.h"
 #include "replay/render/scene.h"
 #include "replay/render/terrain.h"
 
 namespace windhover::replay {
 
-// A horizontal strip of the terrain's raster, while it is painted.
+// A horizontal strip of a terrain's raster, while it is painted.
 struct Strip {
-  Eigen::Vector2d origin;  // of texel (0, 0) of the whole raster, m
   double texel_m = 0.1;
   int width = 0;  // texels
-  int first_row = 0;
   int rows = 0;
-  std::uint32_t* colours = nullptr;  // of texel (0, first_row)
+  int first_x = 0;  // texel of the lattice where the strip begins
+  int first_y = 0;
+  std::uint32_t* colours = nullptr;
   Terrain::Height* heights = nullptr;
+  Terrain::Surface* surfaces = nullptr;
+  Terrain::Underside* undersides = nullptr;
 };
 
-// Unlit colours of everything flat: meadow, plots, roads with their markings.
-void PaintGround(const Scene& scene, const Strip& strip);
-// Colours and heights of what stands on it: hedges, buildings, trees.
+// Unlit colours of everything flat: meadow, plots, roads with their markings; or the photo, unless
+// it is null. Heights of the relief.
+void PaintGround(const Scene& scene, const GroundPhoto* photo, const Strip& strip);
+// What stands on it: hedges, walls, buildings, bridges, canopies, poles, trees.
 void PaintObjects(const Scene& scene, const Strip& strip);
 
 }  // namespace windhover::replay

@@ -7,6 +7,14 @@
 
 namespace windhover::replay {
 
+// How high a way lies: linear between knots, which come in order, level before the first and after
+// the last.
+struct HeightKnot {
+  double at_m = 0.0;
+  double height_m = 0.0;
+};
+double HeightOfWay(const std::vector<HeightKnot>& knots, double along);
+
 // A line that vehicles follow one behind the other, with the lights and stops on its way. Vehicles
 // brake before bends, before red lights and behind whatever is in their way, also of other lanes.
 struct Lane {
@@ -22,12 +30,8 @@ struct Lane {
     double seconds = 4.0;
     double share = 1.0;  // of the drivers
   };
-  // How high the way lies: linear between knots, which come in order, level before the first and
-  // after the last. For bridges.
-  struct Knot {
-    double at_m = 0.0;
-    double height_m = 0.0;
-  };
+  // How high the way lies; for bridges.
+  using Knot = HeightKnot;
   Path path;
   double right_m = 0.0;   // lateral place of the lane
   double spacing_m = 30;  // mean distance between vehicles
@@ -38,7 +42,7 @@ struct Lane {
   std::vector<Knot> knots;
 
   // At a place along the path, m.
-  double HeightAt(double along) const;
+  double HeightAt(double along) const { return HeightOfWay(knots, along); }
 };
 
 // A line along which people walk to and fro, alone and in groups; they stop now and then.

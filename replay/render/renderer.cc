@@ -7,8 +7,11 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <unordered_map>
+#include <utility>
 
+#include "replay/render/clip.h"
 #include "replay/render/fill.h"
 
 namespace windhover::replay {
@@ -27,65 +30,70 @@ constexpr std::array<std::array<double, 2>, kInstants> kPlaces = {{{-0.4375, 0.0
                                                                    {0.4375, -0.0625}}};
 constexpr int kBandRows = 16;
 
-// The map's rectangle that any frame may show, or that may cast a shadow on it.
-void FindReach(const CameraPath& path, const FlightPlan& plan, Eigen::Vector2d& low,
-               Eigen::Vector2d& high) {
-  constexpr double kMargin = 14;  // m
-  low.setConstant(1e9);
-  high.setConstant(-1e9);
-  for (int frame = -1; frame <= plan.frames; ++frame) {
-    const Eigen::Matrix3d ground = path.At(frame).GroundFromPixel();
-    for (const int x : {0, plan.width - 1}) {
-      for (const int y : {0, plan.height - 1}) {
-        const Eigen::Vector2d spot = (ground * Eigen::Vector3d(x, y, 1)).hnormalized();
-        low = low.cwiseMin(spot);
-        high = high.cwiseMax(spot);
-      }
-    }
-  }
-  low.array() -= kMargin;
-  high.array() += kMargin;
+// What is farther than this is too small to be drawn, m.
+constexpr double kFarthestBody = 4000;
+constexpr double kBodyReach = 12;  // m, of the largest body with its shadow
+
+// Depth along the optical axis of a point (x, y, height), m.
+double DepthOf(const Camera& camera, const Eigen::Vector3d& point) {
+  return camera.camera_from_world.row(2).dot(Eigen::Vector3d(
+      point.x() - camera.x_m, point.y() - camera.y_m, camera.altitude_m - point.z()));
 }
 
-bool InPicture(const Camera& camera, const VehiclePose& pose, int width, int height) {
-  const Eigen::Vector2d seen = camera.Project({pose.position.x(), pose.position.y(), 0});
-  const double margin = 12 * camera.focal_px / camera.altitude_m;
+bool InPicture(const Camera& camera, const Eigen::Vector3d& point, int width, int height) {
+  const double depth = DepthOf(camera, point);
+  if (depth < -kBodyReach || depth > kFarthestBody) return false;
+  if (depth < 2 * kBodyReach) return true;
+  const Eigen::Vector2d seen = camera.Project(point);
+  const double margin = 1.5 * kBodyReach * camera.focal_px / depth;
   return seen.x() > -margin && seen.y() > -margin && seen.x() < width + margin &&
          seen.y() < height + margin;
 }
 
-DrawnVehicle Drawn(std::int64_t id, const VehicleLook& look, const VehiclePose& pose,
-                   const Sun& sun, float sun_share) {
-  DrawnVehicle vehicle = {id, {}, ShadowOutline(look, pose, sun)};
-  AppendFaces(look, pose, sun, sun_share, vehicle.faces);
-  return vehicle;
-}
-
-// Pixels that the whole vehicle would cover if nothing stood before it, also outside the picture.
-int SilhouettePixels(const DrawnVehicle& vehicle, const Camera& camera) {
-  Eigen::Vector2d low(1e9, 1e9);
-  Eigen::Vector2d high(-1e9, -1e9);
-  std::vector<std::array<Eigen::Vector2d, 4>> outlines;
-  for (const Face& face : vehicle.faces) {
-    std::array<Eigen::Vector2d, 4> outline{};
-    for (int i = 0; i < 4; ++i) {
-      outline[i] = camera.Project(face.corners[i]);
-      low = low.cwiseMin(outline[i]);
-      high = high.cwiseMax(outline[i]);
+// Pixels that the whole body would cover if nothing stood before it, also outside the picture.
+int SilhouettePixels(const DrawnBody& body, const Camera& camera) {
+  constexpr double kOutside = 4000;  // px
+  Eigen::Vector2d low(kOutside, kOutside);
+  Eigen::Vector2d high = -low;
+  std::vector<Outline> outlines;
+  for (const Face& face : body.faces) {
+    outlines.push_back(VisibleOutline(camera, face.corners, Eigen::Vector2d::Zero()));
+    for (const Eigen::Vector2d& point : outlines.back()) {
+      low = low.cwiseMin(point.cwiseMax(-kOutside));
+      high = high.cwiseMax(point.cwiseMin(kOutside));
     }
-    outlines.push_back(outline);
   }
   const int x0 = static_cast<int>(std::floor(low.x()));
   const int y0 = static_cast<int>(std::floor(low.y()));
   const int x1 = static_cast<int>(std::ceil(high.x())) + 1;
   const int y1 = static_cast<int>(std::ceil(high.y())) + 1;
+  if (x1 <= x0 || y1 <= y0) return 0;
   std::vector<bool> covered(static_cast<std::size_t>(x1 - x0) * (y1 - y0));
-  for (const auto& outline : outlines) {
+  for (const Outline& outline : outlines) {
     ForEachPixelInside(outline, x0, x1, y0, y1, [&](int x, int y) {
       covered[static_cast<std::size_t>(y - y0) * (x1 - x0) + (x - x0)] = true;
     });
   }
   return static_cast<int>(std::count(covered.begin(), covered.end(), true));
+}
+
+// h33 = 1 where that is not small against the rest, else unit norm with a positive determinant.
+Eigen::Matrix3d Normalised(const Eigen::Matrix3d& homography) {
+  constexpr double kSmall = 1e-3;
+  const double norm = homography.norm();
+  if (std::abs(homography(2, 2)) > kSmall * norm) return homography / homography(2, 2);
+  return homography / (homography.determinant() < 0 ? -norm : norm);
+}
+
+const FlightPlan& Checked(const FlightPlan& plan, int frames) {
+  if (plan.width < 16 || plan.height < 16 || plan.frames < 1) {
+    throw std::invalid_argument("a flight needs at least one frame of 16x16 px");
+  }
+  if (frames < 0 || frames > plan.frames) {
+    throw std::invalid_argument("flight " + plan.number + " has " + std::to_string(plan.frames) +
+                                " frames");
+  }
+  return plan;
 }
 
 struct Seen {
@@ -98,54 +106,61 @@ struct Seen {
 
 }  // namespace
 
-Renderer::Renderer(const FlightPlan& plan, int threads, const std::function<void()>& go_on)
-    : plan_(plan),
+Renderer::Renderer(const FlightPlan& plan, int threads, const std::function<void()>& go_on,
+                   int frames)
+    : plan_(Checked(plan, frames)),
       scene_(BuildScene(plan)),
       camera_path_(plan.camera, plan.width, plan.height, plan.seed),
       traffic_(scene_, plan.traffic_density, plan.frames, plan.frame_rate_hz),
-      sensor_(plan.sensor, plan.seed) {
-  if (plan.width < 16 || plan.height < 16 || plan.frames < 1) {
-    throw std::invalid_argument("a flight needs at least one frame of 16x16 px");
-  }
-  Eigen::Vector2d low;
-  Eigen::Vector2d high;
-  FindReach(camera_path_, plan, low, high);
-  const double texel_m = std::clamp(0.5 * camera_path_.pixel_m(), 0.06, 0.2);
-  terrain_ = std::make_unique<const Terrain>(scene_, low, high, texel_m, threads, go_on);
-  for (const ParkedVehicle& parked : scene_.parked) {
-    parked_sun_.push_back(terrain_->SunAt(parked.position));
-  }
+      land_(scene_, plan, camera_path_, frames > 0 ? frames : plan.frames, threads, go_on),
+      sensor_(plan.sensor, plan.seed) {}
+
+void Renderer::AddBody(std::int64_t id, const VehicleLook& look, VehiclePose pose,
+                       const Camera& camera, std::vector<DrawnBody>& bodies) const {
+  pose.height +=
+      scene_.GroundAt(static_cast<float>(pose.position.x()), static_cast<float>(pose.position.y()));
+  const Eigen::Vector3d point(pose.position.x(), pose.position.y(), pose.height);
+  if (!InPicture(camera, point, plan_.width, plan_.height)) return;
+  const float sun = land_.SunAt(pose.position, DepthOf(camera, point));
+  DrawnBody body = {id, {}, ShadowOutline(look, pose, scene_.sun), pose.height};
+  AppendFaces(look, pose, scene_.sun, sun, body.faces);
+  bodies.push_back(std::move(body));
 }
 
-std::vector<DrawnVehicle> Renderer::VehiclesAt(double time) const {
+std::vector<DrawnBody> Renderer::BodiesAt(double time) const {
   const Camera camera = camera_path_.At(time);
-  std::vector<DrawnVehicle> drawn;
+  std::vector<DrawnBody> bodies;
   for (const Traffic::Vehicle& vehicle : traffic_.vehicles()) {
-    const VehiclePose pose = traffic_.PoseAt(vehicle, time);
-    if (!InPicture(camera, pose, plan_.width, plan_.height)) continue;
-    drawn.push_back(
-        Drawn(vehicle.id, vehicle.look, pose, scene_.sun, terrain_->SunAt(pose.position)));
+    AddBody(vehicle.id, vehicle.look, traffic_.PoseAt(vehicle, time), camera, bodies);
   }
   const auto first_parked = static_cast<std::int64_t>(traffic_.vehicles().size()) + 1;
   for (std::size_t i = 0; i < scene_.parked.size(); ++i) {
     const ParkedVehicle& parked = scene_.parked[i];
-    const VehiclePose pose = {parked.position, parked.forward};
-    if (!InPicture(camera, pose, plan_.width, plan_.height)) continue;
-    drawn.push_back(Drawn(first_parked + static_cast<std::int64_t>(i), parked.look, pose,
-                          scene_.sun, parked_sun_[i]));
+    AddBody(first_parked + static_cast<std::int64_t>(i), parked.look,
+            {parked.position, parked.forward}, camera, bodies);
   }
-  return drawn;
+  for (const Flag& flag : scene_.flags) {
+    const Eigen::Vector3d top(flag.foot.x(), flag.foot.y(), flag.height);
+    if (!InPicture(camera, top, plan_.width, plan_.height)) continue;
+    DrawnBody body;
+    const float foot =
+        scene_.GroundAt(static_cast<float>(flag.foot.x()), static_cast<float>(flag.foot.y()));
+    AppendFaces(flag, foot, scene_.wind, scene_.sun, Seconds(time), body.faces);
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
 }
 
 cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
   std::array<Camera, kInstants> cameras;
-  std::array<std::vector<DrawnVehicle>, kInstants> vehicles;
+  std::array<std::vector<DrawnBody>, kInstants> bodies;
+  std::array<double, kInstants> times{};
   for (int i = 0; i < kInstants; ++i) {
-    const double time = frame + plan_.sensor.exposure_share * ((i + 0.5) / kInstants - 0.5);
-    cameras[i] = camera_path_.At(time);
-    vehicles[i] = VehiclesAt(time);
-    for (DrawnVehicle& vehicle : vehicles[i]) {
-      if (vehicle.id == without) vehicle.faces.clear();
+    times[i] = frame + plan_.sensor.exposure_share * ((i + 0.5) / kInstants - 0.5);
+    cameras[i] = camera_path_.At(times[i]);
+    bodies[i] = BodiesAt(times[i]);
+    for (DrawnBody& body : bodies[i]) {
+      if (body.id == without) body.faces.clear();
     }
   }
   cv::Mat light(plan_.height, plan_.width, CV_32FC3);
@@ -154,7 +169,7 @@ cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
     View view(plan_.width, rows);
     light.rowRange(first, first + rows).setTo(cv::Scalar::all(0));
     for (int i = 0; i < kInstants; ++i) {
-      view.Draw(*terrain_, cameras[i], scene_.sun, vehicles[i], first, kPlaces[i][0],
+      view.Draw({scene_, land_, cameras[i], bodies[i], Seconds(times[i])}, first, kPlaces[i][0],
                 kPlaces[i][1]);
       for (int row = 0; row < rows; ++row) {
         auto* sum = light.ptr<float>(first + row);
@@ -174,8 +189,8 @@ bool Renderer::Moves(const Traffic::Vehicle& vehicle, int frame) const {
   // Seen by the camera of `frame` both times, so that only the vehicle's own way counts.
   const Camera camera = camera_path_.At(frame);
   const auto seen = [&](double time) {
-    const Eigen::Vector2d spot = traffic_.PoseAt(vehicle, time).position;
-    return camera.Project({spot.x(), spot.y(), 0});
+    const VehiclePose pose = traffic_.PoseAt(vehicle, time);
+    return camera.Project({pose.position.x(), pose.position.y(), pose.height});
   };
   const double half = 0.5 * kMoverWindowFrames;
   return (seen(frame + half) - seen(frame - half)).norm() >= kMoverTravelPx;
@@ -185,16 +200,17 @@ Eigen::Matrix3d Renderer::TrueHomography(int frame) const {
   if (frame == 0) return Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d first_from_frame =
       camera_path_.At(0).GroundFromPixel().inverse() * camera_path_.At(frame).GroundFromPixel();
-  return first_from_frame / first_from_frame(2, 2);
+  return Normalised(first_from_frame);
 }
 
 FrameTruth Renderer::Truth(int frame) const {
   const Camera camera = camera_path_.At(frame);
   FrameTruth truth;
   truth.first_from_frame = TrueHomography(frame);
-  const std::vector<DrawnVehicle> vehicles = VehiclesAt(frame);
+  truth.horizon = camera.Horizon();
+  const std::vector<DrawnBody> bodies = BodiesAt(frame);
   View view(plan_.width, plan_.height);
-  view.Draw(*terrain_, camera, scene_.sun, vehicles, 0, 0, 0);
+  view.Draw({scene_, land_, camera, bodies, Seconds(frame)}, 0, 0, 0);
   std::unordered_map<std::int64_t, Seen> seen;
   for (int y = 0; y < plan_.height; ++y) {
     for (int x = 0; x < plan_.width; ++x) {
@@ -208,24 +224,26 @@ FrameTruth Renderer::Truth(int frame) const {
       ++one.pixels;
     }
   }
-  for (const DrawnVehicle& vehicle : vehicles) {
-    const Seen& one = seen[vehicle.id];
+  for (const DrawnBody& body : bodies) {
+    if (body.id == 0) continue;
+    const Seen& one = seen[body.id];
     if (one.pixels == 0) continue;
     const double visible =
-        std::min(1.0, static_cast<double>(one.pixels) / SilhouettePixels(vehicle, camera));
+        std::min(1.0, static_cast<double>(one.pixels) / SilhouettePixels(body, camera));
     const int width = one.right - one.left + 1;
     const int height = one.bottom - one.top + 1;
-    if (visible < kLeastVisible || std::min(width, height) < kLeastWidthPx) continue;
+    const bool counts = visible >= kLeastVisible;
+    if (visible < kLeastMarked || std::min(width, height) < kLeastWidthPx) continue;
     const LabelledBox box = {frame + 1,
-                             vehicle.id,
+                             body.id,
                              {static_cast<double>(one.left), static_cast<double>(one.top),
                               static_cast<double>(width), static_cast<double>(height)},
-                             1.0,
+                             counts ? 1.0 : 0.0,
                              visible};
-    const auto index = static_cast<std::size_t>(vehicle.id - 1);
+    const auto index = static_cast<std::size_t>(body.id - 1);
     const bool moves =
         index < traffic_.vehicles().size() && Moves(traffic_.vehicles()[index], frame);
-    (moves ? truth.movers : truth.decoys).push_back(box);
+    if (moves || counts) (moves ? truth.movers : truth.decoys).push_back(box);
   }
   return truth;
 }
@@ -233,22 +251,28 @@ FrameTruth Renderer::Truth(int frame) const {
 double Renderer::OffPlaneShare(int frame, int gap, double px) const {
   const Camera now = camera_path_.At(frame);
   const Camera then = camera_path_.At(frame + gap);
-  const Eigen::Matrix3d ground_from_pixel = now.GroundFromPixel();
+  const Eigen::Matrix3d then_from_now = then.GroundFromPixel().inverse() * now.GroundFromPixel();
+  const Eigen::Matrix3d rays = now.WorldFromPixel();
   View view(plan_.width, plan_.height);
-  view.Draw(*terrain_, now, scene_.sun, {}, 0, 0, 0);
+  view.Draw({scene_, land_, now, {}, Seconds(frame)}, 0, 0, 0);
   int off = 0;
+  int land = 0;
   for (int y = 0; y < plan_.height; ++y) {
     for (int x = 0; x < plan_.width; ++x) {
-      const double height = view.at(x, y).height;
-      const Eigen::Vector2d spot = (ground_from_pixel * Eigen::Vector3d(x, y, 1)).hnormalized();
-      const Eigen::Vector2d up = (Eigen::Vector2d(now.x_m, now.y_m) - spot) / now.altitude_m;
-      const Eigen::Vector2d point = spot + height * up;
-      const Eigen::Vector2d error =
-          then.Project({point.x(), point.y(), height}) - then.Project({spot.x(), spot.y(), 0});
-      if (error.norm() > px) ++off;
+      const double depth = view.at(x, y).depth;
+      if (!std::isfinite(depth)) continue;
+      ++land;
+      const Eigen::Vector3d pixel(x, y, 1);
+      const Eigen::Vector3d way = depth * (rays * pixel);
+      const Eigen::Vector3d point(now.x_m + way.x(), now.y_m + way.y(), now.altitude_m - way.z());
+      const Eigen::Vector3d ground = then_from_now * pixel;
+      if (way.z() <= 0 || DepthOf(then, point) <= 0 ||
+          (then.Project(point) - ground.hnormalized()).norm() > px) {
+        ++off;
+      }
     }
   }
-  return static_cast<double>(off) / (plan_.width * plan_.height);
+  return land == 0 ? 0.0 : static_cast<double>(off) / land;
 }
 
 }  // namespace windhover::replay

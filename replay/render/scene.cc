@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/render/scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "replay/render/portable_math.h"
@@ -77,6 +79,47 @@ VehicleLook ThermalLook(VehicleLook look, double warm, Random& random) {
   look.paint.fill(static_cast<float>(level));
   look.glass.fill(static_cast<float>(glass));
   return look;
+}
+
+double Scene::Highest() const {
+  double most = 0;
+  const auto stands = [&most](double height) { most = std::max(most, height); };
+  for (const Building& building : buildings) stands(building.eaves + building.rise + 2);
+  for (const Tree& tree : trees) stands(1.15 * tree.height);
+  for (const Hedge& hedge : hedges) stands(1.1 * hedge.height);
+  for (const Pole& pole : poles) stands(pole.height);
+  for (const Wall& wall : walls) stands(wall.height);
+  for (const Canopy& canopy : canopies) stands(canopy.height + 0.5);
+  for (const Flag& flag : flags) stands(flag.height + 0.3);
+  for (const Bridge& bridge : bridges) {
+    for (const HeightKnot& knot : bridge.knots) stands(knot.height_m + 1);
+  }
+  return most + 1.2 * relief.height_m + 2 * relief.ripple_m;
+}
+
+// Dunes rise slowly on the side the wind comes from and fall fast behind the crest.
+float Scene::GroundAt(float x, float y) const {
+  if (relief.height_m <= 0) return 0;
+  constexpr float kRise = 0.72F;  // share of the way from trough to trough
+  const auto key = static_cast<std::uint32_t>(seed) * 53U;
+  const auto length = static_cast<float>(relief.length_m);
+  const auto edge = static_cast<float>(relief.edge_y_m);
+  const float flat = std::clamp((edge - y) / 40, 0.0F, 1.0F);
+  const auto smooth = [](float share) { return share * share * (3 - 2 * share); };
+  const Eigen::Vector2f across = wind.direction.cast<float>();
+  const float way = (x * across.x() + y * across.y()) / length +
+                    0.9F * Noise(x / (1.9F * length), y / (1.9F * length), key) +
+                    0.25F * Noise(x / (0.6F * length), y / (0.6F * length), key + 1);
+  const float phase = way - std::floor(way);
+  const float share = phase < kRise ? phase / kRise : (1 - phase) / (1 - kRise);
+  const float size = 0.65F + 0.35F * Noise(x / (2.7F * length), y / (2.7F * length), key + 2);
+  const float ripple_length = 0.075F * length;
+  const float ripple =
+      Noise((x * across.x() + y * across.y()) / (0.3F * ripple_length) +
+                1.3F * Noise(x / (4 * ripple_length), y / (4 * ripple_length), key + 3),
+            (y * across.x() - x * across.y()) / (3 * ripple_length), key + 4);
+  return smooth(flat) * (static_cast<float>(relief.height_m) * size * smooth(share) +
+                         static_cast<float>(relief.ripple_m) * (1 + ripple));
 }
 
 Scene BuildScene(const FlightPlan& plan) {

@@ -23,14 +23,15 @@ struct Area {
   double width = 0.0;                                  // m
 };
 
-enum class GroundKind { kLawn, kField, kPaved, kGravel };
+enum class GroundKind { kLawn, kField, kPaved, kGravel, kSlabs, kForest, kWater };
 
 // A piece of ground; later ones lie on earlier ones.
 struct Plot {
   Area area;
   GroundKind kind = GroundKind::kLawn;
   Colour colour{};
-  double row_m = 0.0;  // distance of a field's rows; of painted bays on paved ground; 0: none
+  // Distance of a field's rows; of painted bays on paved ground; side of slabs; 0: none.
+  double row_m = 0.0;
   double row_length_m = 0.0;  // painted bays only
 };
 
@@ -49,12 +50,23 @@ struct Junction {
 
 enum class RoofKind { kGable, kHip, kFlat };
 
+enum class FacadeKind { kPlaster, kBalconies, kBands, kGlass, kBlank };
+
+// What the walls of a building look like.
+struct Facade {
+  FacadeKind kind = FacadeKind::kPlaster;
+  Colour colour = {168, 178, 184};
+  float floor = 2.8F;  // m, height of a storey
+  float bay = 2.6F;    // m, from window to window
+};
+
 struct Building {
   Area area;           // length along the ridge
   double eaves = 4.0;  // m above the ground
   double rise = 2.5;   // m from the eaves to the ridge; height of the parapet on a flat roof
   RoofKind roof = RoofKind::kGable;
-  Colour colour{};
+  Colour colour{};  // of the roof
+  Facade facade{};
 };
 
 struct Tree {
@@ -63,11 +75,81 @@ struct Tree {
   double height = 6.0;  // m
   Colour colour{};
   std::uint32_t seed = 0;
+  bool trunk = true;  // stands on a trunk with air around it; else the crown reaches the ground
 };
 
 struct Hedge {
   Area area;
   double height = 1.4;  // m
+};
+
+// A post, a column, a mast.
+struct Pole {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double radius = 0.12;  // m
+  double height = 7.0;   // m
+  Colour colour = {120, 122, 122};
+  // A street lamp's arm reaches this far along `arm`, m; 0: none.
+  double arm_m = 0.0;
+  Eigen::Vector2d arm = Eigen::Vector2d::UnitX();
+};
+
+// A wall or a fence.
+struct Wall {
+  Area area;
+  double height = 1.6;  // m
+  Colour colour = {120, 130, 138};
+};
+
+// A flat roof on thin legs, or an umbrella where it is round: air beneath.
+struct Canopy {
+  Area area;
+  double height = 2.4;  // m
+  bool round = false;
+  Colour colour{};
+};
+
+// A way that leads over others: its height is that of `knots` over its length, linear between them.
+// It stands on banks, and as a deck on air between `open_from_m` and `open_to_m`.
+struct Bridge {
+  Path path;
+  double width = 9.0;       // m, with its parapets
+  double lane_width = 3.5;  // m
+  std::vector<HeightKnot> knots;
+  double open_from_m = 0.0;
+  double open_to_m = 0.0;
+};
+
+// A flag on a pole, moved by the wind.
+struct Flag {
+  Eigen::Vector2d foot = Eigen::Vector2d::Zero();
+  double height = 9.0;  // m, of its upper edge
+  double length = 2.4;  // m
+  double drop = 1.5;    // m, of the cloth
+  std::array<Colour, 3> bands{};
+  std::uint32_t seed = 0;
+};
+
+// Smooth relief of the whole ground.
+struct Relief {
+  double height_m = 0.0;  // of the dunes; 0: flat
+  double length_m = 60;   // from crest to crest
+  double ripple_m = 0.0;  // height of the wind's ripples
+  double edge_y_m = 1e9;  // no relief beyond this line
+};
+
+// What is seen over the horizon and through the air.
+struct Sky {
+  Colour horizon = {222, 212, 200};
+  Colour zenith = {196, 148, 96};
+  float clouds = 0.5F;   // 0: none, 1: overcast
+  double haze_m = 9000;  // at this distance the air's own light has taken over by 63 %
+};
+
+// Moves everything that the wind moves.
+struct Wind {
+  Eigen::Vector2d direction = Eigen::Vector2d(0.8, 0.6);
+  double sway_m = 0.16;  // how far leaves swing
 };
 
 // A person is a vehicle, too: what can be in the way of a picture is the same for both.
@@ -105,11 +187,24 @@ struct Scene {
   std::vector<Building> buildings;
   std::vector<Tree> trees;
   std::vector<Hedge> hedges;
+  std::vector<Pole> poles;
+  std::vector<Wall> walls;
+  std::vector<Canopy> canopies;
+  std::vector<Bridge> bridges;
+  std::vector<Flag> flags;
+  Relief relief{};
+  Sky sky{};
+  Wind wind{};
   std::vector<ParkedVehicle> parked;
   std::vector<Lane> lanes;
   std::vector<Walk> walks;
   // Seen by its warmth: colours are grey levels of a thermal camera.
   bool thermal = false;
+
+  // No part of the scene is higher than this, m.
+  double Highest() const;
+  // Height of the bare ground at a spot of the map, m.
+  float GroundAt(float x, float y) const;
 };
 
 // The scene below the flight; the same for the same plan.

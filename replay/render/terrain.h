@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -10,60 +11,97 @@
 
 namespace windhover::replay {
 
-// The part of a scene that stands still, as a raster: what colour each spot has in its light, and
-// how high it is. Texel (i, j) has its centre at origin + texel_m * (i, j).
+class GroundPhoto;
+
+// Texels of the fixed lattice over the map: texel (i, j) has its centre at texel_m * (i, j). Ends
+// are exclusive.
+struct TexelRect {
+  int x0 = 0;
+  int y0 = 0;
+  int x1 = 0;
+  int y1 = 0;
+
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  std::size_t area() const { return static_cast<std::size_t>(width()) * height(); }
+};
+
+// The part of a scene that stands still, as a raster: what colour each spot has in its light, how
+// high it is and what it is made of. What a texel holds depends on the scene and the texel alone,
+// not on the rectangle, as long as the rectangle has everything in it that casts a shadow there.
 class Terrain {
  public:
-  // Heights in cm; the lowest bit is set where the spot is foliage.
   using Height = std::uint16_t;
-  static constexpr Height kFoliage = 1;
+  static constexpr float kHeightUnit = 0.0025F;  // m
+  static constexpr float kMostMetres = 160.0F;
   static constexpr float HeightMetres(Height height) {
-    return static_cast<float>(height & ~kFoliage) * 0.01F;
+    return static_cast<float>(height) * kHeightUnit;
   }
+  // Air from the ground up to here, then the thing itself: bridges, crowns. 0: none.
+  using Underside = std::uint8_t;
+  static constexpr float kUndersideUnit = 0.25F;  // m
 
-  // Side of the blocks whose greatest heights are known, texels.
-  static constexpr int kBlock = 8;
+  // What a spot is made of.
+  using Surface = std::uint16_t;
+  static constexpr Surface kSolid = 0;
+  static constexpr Surface kFoliage = 1;
+  static constexpr Surface kWater = 2;
+  static constexpr Surface kTrunk = 3;
+  static constexpr Surface kFirstBuilding = 16;  // + its index in the scene
 
-  // From `low` to `high` of the map. `go_on`, where there is one, is called before each strip or
-  // row from the thread that works on it; what it throws ends the work and comes out here.
-  Terrain(const Scene& scene, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-          double texel_m, int threads, const std::function<void()>& go_on = {});
+  // Greatest heights are known of blocks with sides of 4, 16, 64 and 256 texels.
+  static constexpr int kBlockLevels = 4;
+  static constexpr int kBlockShift = 2;
+  static constexpr int kAlignment = 1 << (kBlockShift * kBlockLevels);
+  // Colours are also known as means over 2, 4, ... 64 texels.
+  static constexpr int kMips = 6;
+
+  // The rectangle is widened to whole blocks of the largest side. `photo`, unless null, is what the
+  // ground looks like. `go_on`, where there is one, is called before each strip or row from the
+  // thread that works on it; what it throws ends the work and comes out here.
+  Terrain(const Scene& scene, const GroundPhoto* photo, const TexelRect& rect, double texel_m,
+          int threads, const std::function<void()>& go_on = {});
 
   double texel_m() const { return texel_m_; }
-  const Eigen::Vector2d& origin() const { return origin_; }
-  int width() const { return width_; }
-  int height() const { return height_; }
+  const TexelRect& rect() const { return rect_; }
+  int width() const { return rect_.width(); }
+  int height() const { return rect_.height(); }
 
-  // Blue, green, red and the share of the sun that reaches the spot, from the lowest byte on.
-  const std::uint32_t* colours() const { return colours_.data(); }
+  // All rasters begin at (rect().x0, rect().y0). Mip 0 has the texels themselves: blue, green, red
+  // and the share of the sun that reaches the spot, from the lowest byte on.
+  const std::uint32_t* colours(int mip) const { return colours_[mip].data(); }
   const Height* heights() const { return heights_.data(); }
+  const Surface* surfaces() const { return surfaces_.data(); }
+  const Underside* undersides() const { return undersides_.data(); }
+  // Greatest heights of the blocks of a level, 1 to kBlockLevels.
+  const Height* highest(int level) const { return highest_[level - 1].data(); }
+  int block_width(int level) const { return width() >> (kBlockShift * level); }
   // The greatest height of all, m.
-  float highest() const { return highest_of_all_; }
-  // No texel of the rectangle, which may reach outside, is higher than this, m.
-  float HighestIn(float x0, float y0, float x1, float y1) const;
-  // The greatest height, m, within kBlock texels of the texel at least.
-  float highest_around(int x, int y) const {
-    return highest_around_[static_cast<std::size_t>(y / kBlock) * blocks_x_ + x / kBlock];
-  }
-  // Share of the sun at a spot of the map, 0 to 1; 1 outside.
+  float highest_of_all() const { return highest_of_all_; }
+  // No texel of the rectangle, counted from the raster's first one, is higher than this, m. The
+  // rectangle may reach outside.
+  float HighestIn(double x0, double y0, double x1, double y1) const;
+
+  // Share of the sun that reaches a spot of the map, 0 to 1; 1 outside the raster.
   float SunAt(const Eigen::Vector2d& spot) const;
 
  private:
-  void Paint(const Scene& scene, int threads, const std::function<void()>& go_on);
+  void Paint(const Scene& scene, const GroundPhoto* photo, int threads,
+             const std::function<void()>& go_on);
   void FindHighest();
   void Light(const Scene& scene, int threads, const std::function<void()>& go_on);
+  // Whether anything may stand between a block of shadows and the sun.
+  bool MayBeShaded(int block_x, int block_y, float step_x, float step_y, float rise) const;
+  void LightRow(const Scene& scene, int y, const std::vector<std::uint8_t>& lit);
+  void MakeMips(int threads);
 
-  Eigen::Vector2d origin_;
+  TexelRect rect_;
   double texel_m_;
-  int width_;
-  int height_;
-  int blocks_x_ = 0;
-  int blocks_y_ = 0;
-  std::vector<std::uint32_t> colours_;
+  std::array<std::vector<std::uint32_t>, kMips + 1> colours_;
   std::vector<Height> heights_;
-  // Greatest heights of each block, of it with its eight neighbours, and of all.
-  std::vector<float> highest_;
-  std::vector<float> highest_around_;
+  std::vector<Surface> surfaces_;
+  std::vector<Underside> undersides_;
+  std::array<std::vector<Height>, kBlockLevels> highest_;
   float highest_of_all_ = 0;
 };
 

@@ -3,6 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+
+#include "replay/render/portable_math.h"
 
 namespace windhover::replay {
 namespace {
@@ -36,26 +39,48 @@ class Skin {
       low[i] = At(front ? taper.front_low : taper.rear_low, right * taper.side_low, taper.low);
       high[i] = At(front ? taper.front_high : taper.rear_high, right * taper.side_high, taper.high);
     }
+    const Eigen::Vector3d inside = At(0.5 * (taper.front_low + taper.rear_low), 0,
+                                      std::min(0.5 * (taper.low + taper.high), 0.5));
     for (int i = 0; i < 4; ++i) {
       const int j = (i + 1) % 4;
-      Add({low[i], low[j], high[j], high[i]}, sides);
+      Add({low[i], low[j], high[j], high[i]}, inside, sides);
     }
-    Add(high, top);
+    Add(high, inside, top);
+  }
+
+  // A limb from joint to joint, (along, right, up) in m from the middle of the feet.
+  void AddLimb(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double thick,
+               const Colour& colour) {
+    std::array<Eigen::Vector3d, 4> low{};
+    std::array<Eigen::Vector3d, 4> high{};
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector3d corner(i < 2 ? thick : -thick, i == 1 || i == 2 ? thick : -thick, 0);
+      low[i] = InWorld(from + corner);
+      high[i] = InWorld(to + corner);
+    }
+    const Eigen::Vector3d inside = InWorld(0.5 * (from + to));
+    for (int i = 0; i < 4; ++i) {
+      const int j = (i + 1) % 4;
+      Add({low[i], low[j], high[j], high[i]}, inside, colour);
+    }
+    Add(high, inside, colour);
   }
 
  private:
   Eigen::Vector3d At(double along, double right, double height) const {
     const Eigen::Vector2d spot = pose_.position + 0.5 * look_.length * along * pose_.forward +
                                  0.5 * look_.width * right * Right(pose_.forward);
-    return {spot.x(), spot.y(), height};
+    return {spot.x(), spot.y(), pose_.height + height + 0.5 * look_.length * along * pose_.pitch};
+  }
+  Eigen::Vector3d InWorld(const Eigen::Vector3d& own) const {
+    return At(2 * own.x() / look_.length, 2 * own.y() / look_.width, own.z());
   }
 
-  void Add(const std::array<Eigen::Vector3d, 4>& corners, const Colour& colour) {
+  void Add(const std::array<Eigen::Vector3d, 4>& corners, const Eigen::Vector3d& inside,
+           const Colour& colour) {
     Eigen::Vector3d normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
     const Eigen::Vector3d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-    const Eigen::Vector3d out(middle.x() - pose_.position.x(), middle.y() - pose_.position.y(),
-                              middle.z() - 0.5);
-    if (normal.dot(out) < 0) normal = -normal;
+    if (normal.dot(middle - inside) < 0) normal = -normal;
     const auto facing =
         static_cast<float>(std::max(0.0, normal.dot(sun_.direction)) / sun_.direction.z());
     const float light = sun_.ambient + (1 - sun_.ambient) * sun_share_ * std::min(facing, 1.25F);
@@ -68,6 +93,24 @@ class Skin {
   float sun_share_;
   std::vector<Face>& faces_;
 };
+
+// Legs and arms swing against each other, a pair of steps every 1.4 m.
+void AddPerson(const VehicleLook& look, const VehiclePose& pose, Skin& skin) {
+  constexpr Colour kSkin = {120, 150, 190};
+  constexpr Colour kHair = {38, 48, 62};
+  const double size = look.height / 1.75;
+  const double swing = 0.26 * Sine(2 * kPi * pose.phase / 1.4);
+  for (const double side : {-1.0, 1.0}) {
+    skin.AddLimb({side * swing * size, 0.10 * side, 0.03}, {0, 0.10 * side, 0.86 * size}, 0.085,
+                 look.glass);
+    skin.AddLimb({-0.8 * side * swing * size, 0.27 * side, 0.8 * size},
+                 {0, 0.24 * side, 1.38 * size}, 0.06, look.paint);
+  }
+  skin.AddLimb({0, -0.08, 0.84 * size}, {0, -0.08, 1.45 * size}, 0.13, look.paint);
+  skin.AddLimb({0, 0.08, 0.84 * size}, {0, 0.08, 1.45 * size}, 0.13, look.paint);
+  skin.AddLimb({0.02, 0, 1.45 * size}, {0.02, 0, 1.64 * size}, 0.09, kSkin);
+  skin.AddLimb({-0.01, 0, 1.62 * size}, {-0.01, 0, look.height}, 0.10, kHair);
+}
 
 }  // namespace
 
@@ -91,15 +134,13 @@ void AppendFaces(const VehicleLook& look, const VehiclePose& pose, const Sun& su
       skin.Add({0.9, top, -1, 0.55, -1, 0.55, 1, 1}, paint, Between(paint, {190, 190, 188}, 0.6F));
       break;
     case VehicleKind::kPerson:
-      skin.Add({0.05, 0.85, -0.8, 0.8, -0.6, 0.6, 0.55, 0.7}, look.glass, look.glass);
-      skin.Add({0.85, top - 0.25, -0.6, 0.6, -0.5, 0.5, 0.8, 1.0}, paint, paint);
-      skin.Add({top - 0.25, top, -0.4, 0.4, -0.4, 0.4, 0.4, 0.35}, {64, 78, 98}, {40, 52, 70});
+      AddPerson(look, pose, skin);
       break;
   }
 }
 
-std::array<Eigen::Vector2d, 6> ShadowOutline(const VehicleLook& look, const VehiclePose& pose,
-                                             const Sun& sun) {
+std::vector<Eigen::Vector2d> ShadowOutline(const VehicleLook& look, const VehiclePose& pose,
+                                           const Sun& sun) {
   // The roof is smaller than the body; its shadow as high as this is as long as the real one.
   const double height = 0.85 * look.height;
   const Eigen::Vector2d shift = -sun.direction.head<2>() / sun.direction.z() * height;
@@ -117,6 +158,39 @@ std::array<Eigen::Vector2d, 6> ShadowOutline(const VehicleLook& look, const Vehi
   const auto corner = [&](int i) { return base[(last + i + 4) % 4]; };
   return {corner(-1),        corner(0),         corner(1),
           corner(1) + shift, corner(2) + shift, corner(3) + shift};
+}
+
+void AppendFaces(const Flag& flag, double foot_m, const Wind& wind, const Sun& sun, double time_s,
+                 std::vector<Face>& faces) {
+  constexpr int kColumns = 6;
+  const auto rows = static_cast<int>(flag.bands.size());
+  Random random(flag.seed);
+  const double late = random.Uniform(0, 10);
+  // The wind turns a little; waves run out along the cloth and grow, its end hangs lower.
+  const double turn = 0.35 * Sine(0.9 * time_s + late) + 0.15 * Sine(2.3 * time_s + 2 * late);
+  const Eigen::Vector2d along = (wind.direction + turn * Right(wind.direction)).normalized();
+  const auto point = [&](int column, int row) -> Eigen::Vector3d {
+    const double out = static_cast<double>(column) / kColumns;
+    const double wave = 0.16 * out * Sine(7.0 * out - 9.5 * time_s + late);
+    const Eigen::Vector2d spot =
+        flag.foot + flag.length * (0.96 * out * along + wave * Right(along));
+    const double sag = 0.12 * flag.length * out * (1 + 0.4 * Sine(3.1 * time_s + late));
+    return {spot.x(), spot.y(), foot_m + flag.height - sag - flag.drop * row / rows};
+  };
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const std::array<Eigen::Vector3d, 4> corners = {point(column, row), point(column + 1, row),
+                                                      point(column + 1, row + 1),
+                                                      point(column, row + 1)};
+      const Eigen::Vector3d normal =
+          (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
+      // Sun shines through the cloth.
+      const auto facing = static_cast<float>(std::abs(normal.dot(sun.direction)));
+      const float light = sun.ambient + 0.1F + 0.8F * (1 - sun.ambient) * facing;
+      const Colour& band = flag.bands[row];
+      faces.push_back({corners, {band[0] * light, band[1] * light, band[2] * light}});
+    }
+  }
 }
 
 }  // namespace windhover::replay

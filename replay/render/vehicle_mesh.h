@@ -17,13 +17,17 @@ struct Face {
   Colour colour{};
 };
 
-// The skin of a vehicle, without what lies underneath. `sun_share` is the share of the sun that
-// reaches it, 0 to 1.
+// The skin of a vehicle or of a person in mid-stride, without what lies underneath. `sun_share` is
+// the share of the sun that reaches it, 0 to 1.
 void AppendFaces(const VehicleLook& look, const VehiclePose& pose, const Sun& sun, float sun_share,
                  std::vector<Face>& faces);
 
-// The outline of the shadow that it casts on the ground: convex, 6 points.
-std::array<Eigen::Vector2d, 6> ShadowOutline(const VehicleLook& look, const VehiclePose& pose,
-                                             const Sun& sun);
+// The outline of the shadow that it casts on what it stands on: convex, 6 points.
+std::vector<Eigen::Vector2d> ShadowOutline(const VehicleLook& look, const VehiclePose& pose,
+                                           const Sun& sun);
+
+// The cloth of a flag in the wind, which has two sides and no shadow worth mentioning.
+void AppendFaces(const Flag& flag, double foot_m, const Wind& wind, const Sun& sun, double time_s,
+                 std::vector<Face>& faces);
 
 }  // namespace windhover::replay

@@ -14,6 +14,7 @@
 #include "replay/app/progress.h"
 #include "replay/format/format_error.h"
 #include "replay/format/homographies.h"
+#include "replay/format/horizon.h"
 #include "replay/format/labels.h"
 #include "replay/format/pending_folder.h"
 #include "replay/format/sequence.h"
@@ -34,18 +35,32 @@ struct RenderSettings {
   int threads = 0;
 };
 
-void WriteTruth(const std::filesystem::path& folder, const std::vector<FrameTruth>& truth) {
+// Whether any pixel of the picture sees the sky.
+bool ShowsSky(const Eigen::Vector3d& horizon, const SequenceInfo& info) {
+  double lowest = horizon.z();
+  lowest += std::min(0.0, horizon.x() * (info.width - 1));
+  lowest += std::min(0.0, horizon.y() * (info.height - 1));
+  return lowest <= 0;
+}
+
+void WriteTruth(const std::filesystem::path& folder, const SequenceInfo& info,
+                const std::vector<FrameTruth>& truth) {
   std::vector<LabelledBox> movers;
   std::vector<LabelledBox> decoys;
   std::vector<Eigen::Matrix3d> homographies;
+  std::vector<Eigen::Vector3d> horizons;
+  bool sky = false;
   for (const FrameTruth& frame : truth) {
     movers.insert(movers.end(), frame.movers.begin(), frame.movers.end());
     decoys.insert(decoys.end(), frame.decoys.begin(), frame.decoys.end());
     homographies.push_back(frame.first_from_frame);
+    horizons.push_back(frame.horizon);
+    sky = sky || ShowsSky(frame.horizon, info);
   }
   WriteTruthBoxes(MoversPath(folder), movers);
   WriteTruthBoxes(DecoysPath(folder), decoys);
   WriteHomographies(HomographiesPath(folder), homographies);
+  if (sky) WriteHorizons(HorizonPath(folder), horizons);
 }
 
 // Pictures are rendered and written on all threads; between, compression takes them in order.
@@ -82,6 +97,11 @@ void WriteFrames(const Renderer& renderer, const std::filesystem::path& folder,
 void RenderSequence(FlightPlan plan, const RenderSettings& settings,
                     const std::filesystem::path& out) {
   if (settings.seed > 0) plan.seed = settings.seed;
+  if (!settings.ground.empty()) {
+    plan.ground = cv::imread(settings.ground.string());
+    if (plan.ground.empty()) throw FormatError(settings.ground, "is no picture that can be read");
+    plan.ground_pixel_m = plan.camera.pixel_m;
+  }
   if (!settings.size.empty()) ParseSize(settings.size, plan.width, plan.height);
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const int threads = settings.threads > 0 ? settings.threads : cores;
@@ -95,10 +115,10 @@ void RenderSequence(FlightPlan plan, const RenderSettings& settings,
   PendingFolder folder(out);
   std::filesystem::create_directories(folder.path() / info.image_folder);
   std::fprintf(stderr, "painting the ground of %s\n", info.name.c_str());
-  const Renderer renderer(plan, threads, ThrowIfInterrupted);
+  const Renderer renderer(plan, threads, ThrowIfInterrupted, info.frames);
   std::vector<FrameTruth> truth(info.frames);
   WriteFrames(renderer, folder.path(), info, threads, truth);
-  WriteTruth(folder.path(), truth);
+  WriteTruth(folder.path(), info, truth);
   WriteSequenceInfo(folder.path(), info);
   folder.Commit();
   std::printf("%s\n", out.string().c_str());
@@ -133,8 +153,11 @@ void AddRenderCommand(CLI::App& app) {
           "The sequence's folder; that of the dataset where there are several. Each appears "
           "when it is complete")
       ->required();
-  command->add_option("--frames", settings->frames, "Only so many from the start; default: all")
+  command->add_option("--frames", settings->frames, "At most so many from the start; default: all")
       ->check(CLI::Range(1, 100000));
+  command->add_option("--ground", settings->ground,
+                      "A picture of real ground from straight above, in place of the painted one; "
+                      "its pixels are as large as the camera's below it");
   command->add_option(
       "--size", settings->size,
       "WIDTHxHEIGHT in px, with the same field of view; default: as the flight has");

@@ -12,6 +12,7 @@ FlightPlan Outskirts() {
   plan.number = "01";
   plan.name = "outskirts";
   plan.frames = 420;
+  plan.traffic_density = 0.3;
   return plan;
 }
 
@@ -89,6 +90,7 @@ FlightPlan Dunes() {
                  .climb_m = 6,
                  .attitude_wobble_deg = 0.2};
   plan.sensor = {.vignetting = 0.12, .gain = 0.8, .bias = 22, .read_sigma = 3.2, .shot_gain = 0.04};
+  plan.traffic_density = 0.8;
   return plan;
 }
 
@@ -127,7 +129,7 @@ FlightPlan Valley() {
   plan.camera = {.altitude_m = 85,
                  .nominal_width_px = 720,
                  .pixel_m = 0.118,
-                 .speed_m = 1.5,
+                 .speed_m = 2.1,
                  .yaw_deg = 90,
                  .yaw_rate_deg = 0.02,
                  .yaw_wobble_deg = 0.8,
@@ -136,6 +138,7 @@ FlightPlan Valley() {
                  .climb_m = 1.5,
                  .attitude_wobble_deg = 0.3};
   plan.sensor = {.read_sigma = 2.2};
+  plan.traffic_density = 0.27;
   return plan;
 }
 
@@ -149,14 +152,14 @@ FlightPlan Harbour() {
                  .altitude_m = 200,
                  .pixel_m = 0.25,
                  .radius_m = 180,
-                 .orbit_deg = 0.6,
+                 .orbit_deg = 0.75,
                  .yaw_rate_deg = 0,
                  .yaw_wobble_deg = 1.2,
                  .tilt_deg = 42,
                  .sway_m = 4,
                  .climb_m = 5,
-                 .attitude_wobble_deg = 0.7,
-                 .wobble_period = 41};
+                 .attitude_wobble_deg = 1.1,
+                 .wobble_period = 33};
   plan.sensor = {.exposure_share = 0.5,
                  .psf_sigma_px = 0.9,
                  .vignetting = 0.15,
@@ -171,6 +174,7 @@ FlightPlan Harbour() {
                  .shot_gain = 0.06,
                  .grey = true,
                  .column_sigma = 1.1};
+  plan.traffic_density = 0.21;
   return plan;
 }
 
@@ -196,6 +200,7 @@ FlightPlan Highway() {
                  .zoom = 1.35,
                  .zoom_period = 140};
   plan.sensor = {.exposure_share = 0.25, .read_sigma = 2.0};
+  plan.traffic_density = 1.5;
   return plan;
 }
 
@@ -218,6 +223,7 @@ FlightPlan Suburb() {
                  .attitude_wobble_deg = 0.5,
                  .jitter_px = 4};
   plan.sensor = {.exposure_share = 0.5, .vignetting = 0.15, .read_sigma = 2.4, .quantiser = 31};
+  plan.traffic_density = 0.34;
   return plan;
 }
 

@@ -27,8 +27,16 @@ constexpr double kLeastPrecision = 0.9;
 constexpr double kLeastRecall = 0.7;
 constexpr double kMostRmsPx = 0.5;
 
-struct Flight {
+// With as much traffic as the scene has by itself, so that a short run meets many movers.
+FlightPlan BusyFlight() {
   FlightPlan plan = FindFlightPlan("flight");
+  plan.frames = 240;
+  plan.traffic_density = 1;
+  return plan;
+}
+
+struct Flight {
+  FlightPlan plan = BusyFlight();
   std::vector<cv::Mat> bgr;
   std::vector<FrameTruth> truth;
 };

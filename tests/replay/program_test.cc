@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "replay/format/horizon.h"
 #include "replay/format/sequence.h"
 #include "replay/format/text_lines.h"
 #include "tests/service/app_process.h"
@@ -73,6 +74,8 @@ TEST(Program, MistakesAreOneClearLine) {
   expect("", "subcommand");
   expect("render", "--out");
   expect("render --sequence 77" + out, "no sequence '77'");
+  expect("render --sequence 1,1" + out, "named twice");
+  expect("render --ground nowhere.png" + out, "is no picture");
   expect("render --size 3x4" + out, "3x4");
   expect("render --size 320" + out, "320");
   expect("detect nowhere" + out, "does not exist");
@@ -131,6 +134,40 @@ TEST(Program, DetectionOnAnOpenClDeviceDoesNotVary) {
   EXPECT_FALSE(Content(out + "1/det.txt").empty());
   EXPECT_EQ(Content(out + "1/det.txt"), Content(out + "2/det.txt"));
   EXPECT_EQ(Content(out + "1/homography.txt"), Content(out + "2/homography.txt"));
+}
+
+TEST(Program, ShortRunsAreTheStartOfLongOnes) {
+  const ScratchFolder folder;
+  const std::string render = "render --size 160x120 --seed 5 --out " + folder.path().string();
+  // The suburb is compressed, the outskirts are not.
+  const Answer both = Call(render + "/set --sequence 1,suburb --frames 4 --threads 3");
+  ASSERT_EQ(both.code, 0) << both.text;
+  for (const std::string number : {"01", "10"}) {
+    const std::string part = number + "-part";
+    const Answer shorter =
+        Call(render + "/" + part + " --sequence " + number + " --frames 2 --threads 1");
+    ASSERT_EQ(shorter.code, 0) << shorter.text;
+    for (const char* file : {"img1/000001.png", "img1/000002.png"}) {
+      const std::string content = Content(folder.path() / part / file);
+      EXPECT_FALSE(content.empty());
+      EXPECT_EQ(content, Content(folder.path() / "set" / number / file)) << number << " " << file;
+    }
+    const std::string boxes = Content(MoversPath(folder.path() / part));
+    EXPECT_EQ(Content(MoversPath(folder.path() / "set" / number)).substr(0, boxes.size()), boxes);
+  }
+  EXPECT_FALSE(std::filesystem::exists(HorizonPath(folder.path() / "set" / "01")));
+}
+
+TEST(Program, TheSkyOfAFlightIsMarked) {
+  const ScratchFolder folder;
+  const std::filesystem::path valley = folder / "valley";
+  const Answer rendered =
+      Call("render --sequence valley --size 144x116 --frames 2 --out " + valley.string());
+  ASSERT_EQ(rendered.code, 0) << rendered.text;
+  const std::vector<Eigen::Vector3d> horizons = ReadHorizons(HorizonPath(valley));
+  ASSERT_EQ(horizons.size(), 2U);
+  EXPECT_LT(horizons[0].dot(Eigen::Vector3d(72, 0, 1)), -5) << "the picture's top is sky";
+  EXPECT_GT(horizons[0].dot(Eigen::Vector3d(72, 60, 1)), 0);
 }
 
 // The first frames of a sequence as pictures one after the other: a video that does not say how

@@ -31,6 +31,7 @@ class Country {
   Scene Build() {
     BuildFields();
     BuildRoad();
+    BuildPoles();
     BuildFarms();
     BuildWoods();
     return std::move(scene_);
@@ -43,11 +44,11 @@ class Country {
   void BuildFields() {
     for (const double side : {-1.0, 1.0}) {
       for (double x = kWest; x < east_;) {
-        const double length = random_.Uniform(55, 120);
+        const double length = random_.Uniform(45, 95);
         const double slant = random_.Uniform(-0.16, 0.16);
         const Vector2d away = Vector2d(slant, side).normalized();
-        for (double from = 16; from < kReach;) {
-          const double depth = random_.Uniform(50, 130);
+        for (double from = random_.Uniform(7, 13); from < kReach;) {
+          const double depth = random_.Uniform(38, 100);
           const Vector2d centre =
               Vector2d(x + 0.5 * length, RoadY(x + 0.5 * length)) + (from + 0.5 * depth) * away;
           AddField(centre, away, length - random_.Uniform(1, 4), depth - random_.Uniform(1, 4));
@@ -58,22 +59,55 @@ class Country {
     }
   }
 
+  // With what grows round it: a strip of grass, a hedge on one side or two, trees in the hedge.
   void AddField(const Vector2d& centre, const Vector2d& away, double length, double depth) {
-    if (random_.Chance(0.16)) return;  // pasture
-    const bool along_road = random_.Chance(0.5);
-    const Vector2d forward = along_road ? Right(away) : away;
-    pieces_.AddField({centre, forward, along_road ? length : depth, along_road ? depth : length});
-    if (random_.Chance(0.4)) {
-      scene_.hedges.push_back({{centre + 0.5 * length * Right(away), away, depth - 6, 1.6}, 1.8});
-      for (int i = random_.Below(4); i > 0; --i) {
-        pieces_.AddTree(
-            centre + 0.5 * length * Right(away) + random_.Uniform(-0.5, 0.5) * depth * away,
-            random_.Uniform(2.0, 4.4));
+    const Vector2d along = Right(away);
+    if (!random_.Chance(0.14)) {  // else pasture
+      const bool along_road = random_.Chance(0.5);
+      pieces_.AddField({centre, along_road ? along : away, along_road ? length : depth,
+                        along_road ? depth : length});
+      scene_.plots.push_back({{centre + 0.5 * length * along, away, depth, random_.Uniform(1.5, 4)},
+                              GroundKind::kLawn,
+                              {60, 112, 104}});
+    } else {
+      for (int i = 4 + random_.Below(9); i > 0; --i) {  // cattle's bushes
+        pieces_.AddTree(centre + random_.Uniform(-0.45, 0.45) * length * along +
+                            random_.Uniform(-0.45, 0.45) * depth * away,
+                        random_.Uniform(0.5, 1.3));
       }
     }
-    if (random_.Chance(0.14)) {  // a tree that was left standing
-      pieces_.AddTree(centre + random_.Uniform(-0.3, 0.3) * depth * away,
+    if (random_.Chance(0.55)) AddHedge(centre + 0.5 * length * along, away, depth - 6);
+    if (random_.Chance(0.35)) AddHedge(centre + 0.5 * depth * away, along, length - 6);
+    if (random_.Chance(0.25)) {  // a tree that was left standing
+      pieces_.AddTree(centre + random_.Uniform(-0.3, 0.3) * depth * away +
+                          random_.Uniform(-0.3, 0.3) * length * along,
                       random_.Uniform(2.6, 4.8));
+    }
+    if (random_.Chance(0.18)) AddBales(centre, away, along);
+  }
+
+  void AddHedge(const Vector2d& middle, const Vector2d& along, double length) {
+    for (double at = -0.5 * length; at < 0.5 * length; at += 14) {
+      if (random_.Chance(0.12)) continue;  // a gap
+      scene_.hedges.push_back({{middle + (at + 7) * along, along, 14.5, random_.Uniform(1.1, 2.0)},
+                               random_.Uniform(1.2, 2.3)});
+      const int trees = random_.Below(4) - 1;
+      for (int i = 0; i < trees; ++i) {
+        pieces_.AddTree(middle + (at + random_.Uniform(0, 14)) * along, random_.Uniform(0.9, 3.8));
+      }
+    }
+  }
+
+  // Round bales of straw in rows, as a harvester leaves them.
+  void AddBales(const Vector2d& centre, const Vector2d& away, const Vector2d& along) {
+    for (int row = -2; row <= 2; ++row) {
+      for (int i = -2; i <= 2; ++i) {
+        if (random_.Chance(0.3)) continue;
+        const Vector2d at = centre + (9.0 * row + random_.Uniform(-1, 1)) * along +
+                            (11.0 * i + random_.Uniform(-3, 3)) * away;
+        scene_.buildings.push_back(
+            {{at, along, 1.5, 1.3}, 1.2, 0.15, RoofKind::kGable, {96, 152, 176}});
+      }
     }
   }
 
@@ -82,10 +116,35 @@ class Country {
     scene_.roads.push_back({road, kRoadWidth, 2, 0, true});
     scene_.lanes.push_back({road, 0.25 * kRoadWidth, 150, 18, 25, {}, {}, {}});
     scene_.lanes.push_back({road.Reversed(), 0.25 * kRoadWidth, 420, 16, 23, {}, {}, {}});
+    BuildVerges(road);
     pieces_.AddTreeRow(road, 6.2, 17, 1.8, 3.4);
     pieces_.AddTreeRow(road, -6.8, 41, 1.4, 3.0);
     for (double x = kWest + random_.Uniform(40, 120); x < east_; x += random_.Uniform(140, 260)) {
       BuildTrack(x);
+    }
+  }
+
+  // The ditch and the worn edge of the road.
+  void BuildVerges(const Path& road) {
+    for (double at = 0; at < road.length(); at += 6) {
+      for (const double side : {-1.0, 1.0}) {
+        const Path::Place place = road.At(at, side * (0.5 * kRoadWidth + 0.5));
+        scene_.plots.push_back({{place.position, place.forward, 6.3, random_.Uniform(0.7, 1.5)},
+                                GroundKind::kGravel,
+                                {104, 126, 138}});
+        if (random_.Chance(0.2)) {
+          pieces_.AddTree(road.At(at, side * random_.Uniform(4.6, 6.6)).position,
+                          random_.Uniform(0.4, 1.1));
+        }
+      }
+    }
+  }
+
+  // A line of poles that comes along with the road and leaves it again.
+  void BuildPoles() {
+    for (double x = kWest; x < east_; x += 38) {
+      const double y = RoadY(x) - 15 - 22 * Sine(x / 210);
+      scene_.poles.push_back({{x, y}, 0.16, random_.Uniform(8, 9.5), {78, 92, 104}});
     }
   }
 

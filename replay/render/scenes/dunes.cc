@@ -28,6 +28,7 @@ class Dunes {
     scene_.sun.direction = Eigen::Vector3d(0.55, -0.45, 0.72).normalized();
     scene_.sun.ambient = 0.5F;
     scene_.meadow = {136, 168, 184};
+    scene_.relief = {.height_m = 5.5, .length_m = 62, .ripple_m = 0.25};
   }
 
   Scene Build() {
@@ -82,7 +83,7 @@ class Dunes {
       const double share = random_.Uniform();
       const double y = EdgeY(x) - 4 - 320 * share * share;
       if (std::abs(y - TrackY(x)) < 5) continue;
-      pieces_.AddTree({x, y}, random_.Uniform(0.4, 1.1), {82, 122, 122});
+      pieces_.AddTree({x, y}, random_.Uniform(0.4, 1.1), {100, 138, 146});
     }
   }
 

@@ -42,6 +42,9 @@ class Harbour {
     BuildStacks();
     BuildParking();
     BuildTrees();
+    for (Building& building : scene_.buildings) {
+      building.facade = {FacadeKind::kBlank, Grey(building.colour[0] + random_.Uniform(2, 14))};
+    }
     return std::move(scene_);
   }
 
@@ -50,7 +53,7 @@ class Harbour {
     scene_.plots.push_back(
         {{{0, 60}, Vector2d::UnitX(), 2 * kHalf + 200, 360}, GroundKind::kPaved, Grey(98)});
     scene_.plots.push_back({{{0, kQuayY - 190}, Vector2d::UnitX(), 2 * kHalf + 400, 380},
-                            GroundKind::kGravel,
+                            GroundKind::kWater,
                             Grey(118)});  // water keeps the day's warmth
     scene_.plots.push_back(
         {{{0, kQuayY + 3}, Vector2d::UnitX(), 2 * kHalf + 200, 7}, GroundKind::kPaved, Grey(86)});

@@ -33,6 +33,7 @@ class Highway {
     BuildLand();
     BuildRoads();
     BuildVerges();
+    BuildFurniture();
     BuildWorks();
     return std::move(scene_);
   }
@@ -91,6 +92,27 @@ class Highway {
                       low ? random_.Uniform(0.4, 0.8) : random_.Uniform(0.6, 3.2));
     }
     pieces_.AddTreeRow(middle, -22, 13, 2.0, 3.8);
+  }
+
+  // Rails along the carriageways, signs and lamps.
+  void BuildFurniture() {
+    for (const double side : {-1.9, 1.9, 14.2, -14.2}) {
+      const Path rail = Beside(side);
+      for (double at = 0; at < rail.length(); at += 8) {
+        const Path::Place place = rail.At(at);
+        scene_.walls.push_back({{place.position, place.forward, 8.1, 0.28}, 0.75, {176, 178, 178}});
+      }
+    }
+    for (double x = kWest; x < east_; x += 42) {
+      scene_.poles.push_back({{x, MiddleY(x)}, 0.14, 11, {150, 152, 152}, 2.6, {0, 1}});
+      const double at = x + random_.Uniform(0, 30);
+      scene_.poles.push_back(
+          {{at, MiddleY(at) + 16.5}, 0.09, random_.Uniform(2, 4), {160, 160, 160}});
+    }
+    for (double x = kWest + 60; x < east_; x += random_.Uniform(130, 210)) {  // sign boards
+      scene_.walls.push_back(
+          {{{x, MiddleY(x) - 16.5}, Vector2d::UnitY(), 4.5, 0.25}, 5.5, {168, 110, 52}});
+    }
   }
 
   void BuildWorks() {

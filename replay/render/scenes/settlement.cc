@@ -156,8 +156,13 @@ void Settlement::AddParking(const Vector2d& corner, int rows, int bays, double t
 }
 
 void Settlement::AddField(const Area& area) {
-  static constexpr std::array<Colour, 5> kCrops = {
-      {{62, 128, 112}, {78, 112, 132}, {70, 146, 150}, {58, 100, 84}, {88, 124, 146}}};
+  static constexpr std::array<Colour, 7> kCrops = {{{62, 128, 112},
+                                                    {78, 112, 132},
+                                                    {70, 146, 150},
+                                                    {58, 100, 84},
+                                                    {88, 124, 146},
+                                                    {54, 118, 88},
+                                                    {104, 158, 172}}};
   Random random = RandomFor(Piece::kField);
   scene_.plots.push_back(
       {area, GroundKind::kField, kCrops[random.Below(kCrops.size())], random.Uniform(0.8, 1.3)});
@@ -171,12 +176,14 @@ void Settlement::AddFarm(const Vector2d& centre, const Vector2d& forward) {
                               5.5,
                               4.0,
                               RoofKind::kGable,
-                              {66, 76, 118}});
+                              {66, 76, 118},
+                              {FacadeKind::kBlank, {78, 96, 116}}});
   scene_.buildings.push_back({{centre + 14 * right - 8 * forward, forward, 22, 10},
                               4.5,
                               3.2,
                               RoofKind::kGable,
-                              {104, 108, 112}});
+                              {104, 108, 112},
+                              {FacadeKind::kBlank, {120, 134, 146}}});
   scene_.buildings.push_back({{centre + 20 * forward + 4 * right, right, 13, 9.5},
                               4.2,
                               3.0,

@@ -28,6 +28,7 @@ class Valley {
     scene_.seed = plan.seed;
     scene_.sun.direction = Eigen::Vector3d(-0.3, 0.68, 0.72).normalized();
     scene_.meadow = {60, 112, 100};
+    scene_.sky.haze_m = 5200;
   }
 
   Scene Build() {
@@ -97,13 +98,18 @@ class Valley {
     pieces_.AddFarm({x + 178, RoadY(x + 178) + 62}, Vector2d(1, 0.2).normalized());
     // The church.
     const Vector2d church(x + 30, RoadY(x + 30) - 62);
-    scene_.buildings.push_back(
-        {{church, Vector2d::UnitX(), 26, 11}, 8, 6, RoofKind::kGable, {62, 72, 108}});
+    scene_.buildings.push_back({{church, Vector2d::UnitX(), 26, 11},
+                                8,
+                                6,
+                                RoofKind::kGable,
+                                {62, 72, 108},
+                                {FacadeKind::kBlank, {150, 168, 180}}});
     scene_.buildings.push_back({{church - Vector2d(15, 0), Vector2d::UnitX(), 6.5, 6.5},
                                 22,
                                 9,
                                 RoofKind::kHip,
-                                {70, 74, 84}});
+                                {70, 74, 84},
+                                {FacadeKind::kBlank, {150, 168, 180}}});
   }
 
   void BuildWoods() {

@@ -27,7 +27,7 @@ FlightPlan Towers() {
   plan.camera = {.altitude_m = 190,
                  .nominal_width_px = 720,
                  .pixel_m = 0.275,
-                 .speed_m = 1.6,
+                 .speed_m = 2.2,
                  .yaw_rate_deg = 0.25,
                  .tilt_deg = 8,
                  .sway_m = 4,

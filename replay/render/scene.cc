@@ -126,6 +126,14 @@ Scene BuildScene(const FlightPlan& plan) {
   switch (plan.scene) {
     case SceneKind::kOutskirts:
       return BuildOutskirts(plan);
+    case SceneKind::kTowers:
+      return BuildTowers(plan);
+    case SceneKind::kStreets:
+      return BuildStreets(plan);
+    case SceneKind::kSquare:
+      return BuildSquare(plan);
+    case SceneKind::kInterchange:
+      return BuildInterchange(plan);
     case SceneKind::kCountry:
       return BuildCountry(plan);
     case SceneKind::kDunes:

@@ -214,12 +214,16 @@ Scene BuildScene(const FlightPlan& plan);
 // of commerce and fields, and streets that cross it.
 Scene BuildOutskirts(const FlightPlan& plan);
 
-Scene BuildCountry(const FlightPlan& plan);  // one road between fields, hedges and farms
-Scene BuildDunes(const FlightPlan& plan);    // sand and planted forest, a track between
-Scene BuildValley(const FlightPlan& plan);   // a road through villages, seen to the horizon
-Scene BuildHarbour(const FlightPlan& plan);  // sheds and containers by night, as warmth
-Scene BuildHighway(const FlightPlan& plan);  // two carriageways, a service road, works
-Scene BuildSuburb(const FlightPlan& plan);   // streets of houses with fields between
+Scene BuildTowers(const FlightPlan& plan);       // avenues between towers
+Scene BuildStreets(const FlightPlan& plan);      // old blocks, cars along every kerb
+Scene BuildSquare(const FlightPlan& plan);       // cafes, a fountain, people
+Scene BuildInterchange(const FlightPlan& plan);  // two motorways, one on a bridge
+Scene BuildCountry(const FlightPlan& plan);      // one road between fields, hedges and farms
+Scene BuildDunes(const FlightPlan& plan);        // sand and planted forest, a track between
+Scene BuildValley(const FlightPlan& plan);       // a road through villages, seen to the horizon
+Scene BuildHarbour(const FlightPlan& plan);      // sheds and containers by night, as warmth
+Scene BuildHighway(const FlightPlan& plan);      // two carriageways, a service road, works
+Scene BuildSuburb(const FlightPlan& plan);       // streets of houses with fields between
 
 // `share` of the way from a to b.
 inline Colour Between(const Colour& a, const Colour& b, float share) {

@@ -21,6 +21,7 @@ FlightPlan Towers() {
   plan.number = "02";
   plan.name = "towers";
   plan.scene = SceneKind::kTowers;
+  plan.traffic_density = 0.1;
   plan.width = 720;
   plan.height = 576;
   plan.frames = 380;
@@ -41,6 +42,7 @@ FlightPlan Streets() {
   plan.number = "03";
   plan.name = "streets";
   plan.scene = SceneKind::kStreets;
+  plan.traffic_density = 0.16;
   plan.frames = 400;
   plan.camera = {.altitude_m = 230,
                  .pixel_m = 0.44,
@@ -99,6 +101,7 @@ FlightPlan Square() {
   plan.number = "06";
   plan.name = "square";
   plan.scene = SceneKind::kSquare;
+  plan.traffic_density = 0.14;
   plan.width = 720;
   plan.height = 576;
   plan.frames = 500;
@@ -232,6 +235,7 @@ FlightPlan Interchange() {
   plan.number = "s1";
   plan.name = "interchange";
   plan.scene = SceneKind::kInterchange;
+  plan.traffic_density = 0.5;
   plan.frames = 300;
   plan.camera = {.altitude_m = 210,
                  .pixel_m = 0.36,

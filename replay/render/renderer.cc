@@ -160,7 +160,7 @@ cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
     cameras[i] = camera_path_.At(times[i]);
     bodies[i] = BodiesAt(times[i]);
     for (DrawnBody& body : bodies[i]) {
-      if (body.id == without) body.faces.clear();
+      if (without != 0 && body.id == without) body.faces.clear();
     }
   }
   cv::Mat light(plan_.height, plan_.width, CV_32FC3);

@@ -143,7 +143,7 @@ struct Sky {
   Colour horizon = {222, 212, 200};
   Colour zenith = {196, 148, 96};
   float clouds = 0.5F;   // 0: none, 1: overcast
-  double haze_m = 9000;  // at this distance the air's own light has taken over by 63 %
+  double haze_m = 5200;  // at this distance the air's own light has taken over by 63 %
 };
 
 // Moves everything that the wind moves.

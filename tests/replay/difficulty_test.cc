@@ -181,5 +181,45 @@ TEST(OutskirtsDifficulty, SomeVehiclesStopInSight) {
   EXPECT_GE(MoversInSight(FindFlightPlan("01")).that_also_stand, 2);
 }
 
+TEST(TowersDifficulty, AQuarterOfThePictureLeavesThePlaneFromFrameToFrame) {
+  const Renderer flight(FindFlightPlan("towers"), 2, {}, 80);
+  double share = 0;
+  for (const int frame : {0, 39, 78}) share += flight.OffPlaneShare(frame, 1, 1.0) / 3;
+  EXPECT_GE(share, 0.25);
+  EXPECT_LE(share, 0.6) << "there must be ground to register";
+}
+
+TEST(StreetsDifficulty, FewMoveAmongManyThatStand) {
+  const Renderer flight(FindFlightPlan("streets"), 2, {}, 40);
+  for (const int frame : {0, 39}) {
+    const FrameTruth truth = flight.Truth(frame);
+    EXPECT_GE(truth.movers.size(), 2U);
+    EXPECT_GE(truth.decoys.size(), 100U);
+  }
+}
+
+TEST(SquareDifficulty, PeopleMoveLessThanTwoPixelsAFrame) {
+  const Renderer flight(FindFlightPlan("square"), 2, {}, 40);
+  std::map<std::int64_t, Eigen::Vector2d> first;
+  const auto centre = [](const LabelledBox& box) {
+    return Eigen::Vector2d(box.box.x + 0.5 * box.box.width, box.box.y + box.box.height);
+  };
+  for (const LabelledBox& box : flight.Truth(0).movers) {
+    first[box.id] = centre(box);
+    EXPECT_LE(box.box.width, 16);
+    EXPECT_LE(box.box.height, 24);
+  }
+  ASSERT_GE(first.size(), 2U);
+  const Eigen::Matrix3d first_from_last = flight.TrueHomography(20);
+  int seen = 0;
+  for (const LabelledBox& box : flight.Truth(20).movers) {
+    if (!first.contains(box.id)) continue;
+    ++seen;
+    const Eigen::Vector2d now = (first_from_last * centre(box).homogeneous()).hnormalized();
+    EXPECT_LE((now - first[box.id]).norm() / 20, 2.0) << "px a frame";
+  }
+  EXPECT_GE(seen, 1);
+}
+
 }  // namespace
 }  // namespace windhover::replay

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -17,10 +18,12 @@ using Eigen::Vector2d;
 constexpr double kWest = -320;
 constexpr double kCross = 70;
 constexpr double kLane = 3.5;
-constexpr double kMotorway = 26;  // width of the one below
-constexpr double kOver = 17;      // of the one on the bridge
-constexpr double kDeck = 6.8;     // m over the lower road
-constexpr double kReach = 330;    // of the crossing road
+constexpr double kMotorway = 26;   // width of the one below
+constexpr double kOver = 17;       // of the one on the bridge
+constexpr double kDeck = 6.8;      // m over the lower road
+constexpr double kService = 44;    // distance of the service roads
+constexpr double kRampDeck = 5.4;  // m over them
+constexpr double kReach = 330;     // of the crossing road
 
 class Interchange {
  public:
@@ -61,7 +64,7 @@ class Interchange {
       AddLane(path, right, 34 + 4 * i, slow, slow + 7);
       AddLane(path.Reversed(), right, 34 + 4 * i, slow, slow + 7);
     }
-    for (const double y : {-44.0, 44.0}) {
+    for (const double y : {-kService, kService}) {
       const Path service({{kWest, y}, {east_, y}});
       scene_.roads.push_back({service, 7, 2, 1.2, true});
       pieces_.AddLanes(service, 1.75, 48, 8, 13);
@@ -90,17 +93,30 @@ class Interchange {
     const Path path = RoundedPath({{kCross + x * 230, y * 15.6},
                                    {kCross + x * 120, y * 19},
                                    {kCross + x * 34, y * 64},
-                                   {kCross + x * 12.6, y * 150},
-                                   {kCross + x * 11.2, y * 215}},
+                                   {kCross + x * 13.2, y * 165},
+                                   {kCross + x * 11.2, y * 260}},
                                   26);
     const double length = path.length();
-    const std::vector<HeightKnot> knots = {
-        {0.30 * length, 0}, {0.62 * length, 3.6}, {0.93 * length, 0}};
+    const double over = WayTo(path, y * kService);
+    const std::vector<HeightKnot> knots = {{over - 70, 0},
+                                           {over - 14, kRampDeck},
+                                           {over + 14, kRampDeck},
+                                           {std::min(over + 95, length - 4), 0}};
     scene_.roads.push_back({path, 5.4, 2, 0.6, false});
-    scene_.bridges.push_back({path, 6.4, 9, knots, 1e9, 1e9});
+    scene_.bridges.push_back({path, 6.4, 9, knots, over - 13, over + 13});
     // Traffic keeps to the right: two of the ramps lead up, two down.
     AddLane(x * y < 0 ? path : path.Reversed(), 0, 40, 11, 16,
             x * y < 0 ? knots : Mirrored(knots, length));
+  }
+
+  // How far along a path the line at height y of the map is met.
+  static double WayTo(const Path& path, double y) {
+    double at = 0;
+    while (at < path.length() &&
+           (path.At(at).position.y() - y) * (path.At(0).position.y() - y) > 0) {
+      at += 0.5;
+    }
+    return at;
   }
 
   static std::vector<HeightKnot> Mirrored(const std::vector<HeightKnot>& knots, double length) {

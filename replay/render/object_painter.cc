@@ -157,12 +157,11 @@ void PaintBridge(const Bridge& bridge, std::uint32_t seed, const Strip& strip) {
   constexpr float kDeck = 1.3F;        // m thick
   const auto half = static_cast<float>(bridge.width / 2);
   const std::vector<Eigen::Vector2d>& points = bridge.path.points();
+  double most = 0;
+  for (const HeightKnot& knot : bridge.knots) most = std::max(most, knot.height_m);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d step = points[i] - points[i - 1];
     const double start = bridge.path.at(i - 1) + 0.5 * step.norm();
-    const double most = std::max(HeightOfWay(bridge.knots, bridge.path.at(i - 1)),
-                                 HeightOfWay(bridge.knots, bridge.path.at(i)));
-    if (most <= 0) continue;
     const Area area = {0.5 * (points[i] + points[i - 1]), step.normalized(),
                        step.norm() + 2 * strip.texel_m, bridge.width + 2 * most / kBankSlope};
     ForEachSpot(strip, area, [&](Spot spot) {

@@ -202,7 +202,7 @@ Shading::Light Shading::Water(const Hit& hit, Light light) const {
   const auto t = static_cast<float>(time_s_);
   const float swell = Noise(x / 2.3F + 0.8F * t, y / 1.7F - 0.5F * t, 91);
   const float chop = Noise(x / 0.55F + 2.6F * t, y / 0.7F + 1.1F * t, 92);
-  const float fine = Noise(x / 0.31F - 3.9F * t, y / 0.27F + 4.6F * t, 93);
+  const float fine = Noise(x / 0.31F - 6.3F * t, y / 0.27F + 7.1F * t, 93);
   const float glint = std::max(0.0F, 0.45F * swell + 0.6F * chop + 0.75F * fine - 0.72F);
   const float wave = 1 + 0.10F * swell + 0.08F * chop;
   for (float& channel : light.colour) {

@@ -42,8 +42,8 @@ const Terrain& SmallTerrain() {
 
 // Where a ray first is inside a column, by tiny steps.
 double DepthByMarching(const Terrain& terrain, const Eigen::Vector3d& origin,
-                       const Eigen::Vector3d& direction, double end, double step) {
-  for (double depth = 0; depth < end; depth += step) {
+                       const Eigen::Vector3d& direction, double begin, double end, double step) {
+  for (double depth = begin; depth < end; depth += step) {
     const Eigen::Vector3d place =
         origin + depth * Eigen::Vector3d(direction.x(), direction.y(), -direction.z());
     const int x =
@@ -71,7 +71,7 @@ TEST(RayCaster, FindsWhatAStepByStepSearchFinds) {
     Eigen::Vector3d direction = aim - origin;
     direction.z() = -direction.z();
     direction.normalize();
-    const double expected = DepthByMarching(terrain, origin, direction, 60, 0.002);
+    const double expected = DepthByMarching(terrain, origin, direction, 0, 60, 0.002);
     const RayCaster caster(terrain, origin.head<2>(), origin.z());
     const Hit hit = caster.Cast(direction, 0, 60);
     if (expected >= 60) {
@@ -80,7 +80,12 @@ TEST(RayCaster, FindsWhatAStepByStepSearchFinds) {
     }
     ++hits;
     ASSERT_NE(hit.kind, Hit::Kind::kNone) << i;
-    EXPECT_NEAR(hit.depth, expected, 0.006) << i;
+    EXPECT_LE(hit.depth, expected + 0.001) << i;
+    if (hit.depth > expected - 0.004) continue;
+    // The steps went over an edge: small ones do not.
+    EXPECT_NEAR(DepthByMarching(terrain, origin, direction, hit.depth - 1e-3, expected, 1e-6),
+                hit.depth, 1e-4)
+        << i;
   }
   EXPECT_GT(hits, 350);
 }
@@ -119,7 +124,7 @@ TEST(Terrain, ATexelDoesNotDependOnTheRectangle) {
   ASSERT_LE(whole.rect().x0, part.rect().x0);
   ASSERT_GE(whole.rect().x1, part.rect().x1);
   // Shadows come from the sun's side, so only the far corner is sure to have all that casts them.
-  const int margin = 120;
+  const int margin = 45;
   int raised = 0;
   for (int y = part.rect().y0 + margin; y < part.rect().y1 - margin; ++y) {
     for (int x = part.rect().x0 + margin; x < part.rect().x1 - margin; ++x) {
@@ -274,12 +279,13 @@ TEST(Shading, WaterGlitters) {
     const Hit hit = caster.Cast(ray, 0, 100);
     const float now = Shading(scene, terrain, 1.0).At(hit, ray, 0.2).colour[1];
     const float later = Shading(scene, terrain, 1.04).At(hit, ray, 0.2).colour[1];
-    if (std::abs(now - later) > 3) ++changed;
-    if (now > 160) ++bright;
+    if (now < 120) continue;
+    ++bright;
+    if (std::abs(now - later) > 15) ++changed;
   }
-  EXPECT_GT(changed, 100);
-  EXPECT_GT(bright, 3);
-  EXPECT_LT(bright, 200);
+  EXPECT_GE(bright, 4);
+  EXPECT_LE(bright, 100);
+  EXPECT_GE(2 * changed, bright);
 }
 
 TEST(Shading, HazeGrowsToItsShare) {

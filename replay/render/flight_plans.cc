@@ -21,7 +21,7 @@ FlightPlan Towers() {
   plan.number = "02";
   plan.name = "towers";
   plan.scene = SceneKind::kTowers;
-  plan.traffic_density = 0.1;
+  plan.traffic_density = 0.06;
   plan.width = 720;
   plan.height = 576;
   plan.frames = 380;
@@ -101,7 +101,7 @@ FlightPlan Square() {
   plan.number = "06";
   plan.name = "square";
   plan.scene = SceneKind::kSquare;
-  plan.traffic_density = 0.14;
+  plan.traffic_density = 0.05;
   plan.width = 720;
   plan.height = 576;
   plan.frames = 500;
@@ -177,7 +177,7 @@ FlightPlan Harbour() {
                  .shot_gain = 0.06,
                  .grey = true,
                  .column_sigma = 1.1};
-  plan.traffic_density = 0.21;
+  plan.traffic_density = 0.13;
   return plan;
 }
 

@@ -90,7 +90,9 @@ std::vector<Trajectory> FollowWalks(const std::vector<Walk>& walks, double densi
                                     std::uint64_t seed, const TrafficClock& clock) {
   std::vector<Trajectory> trajectories;
   for (std::size_t walk = 0; walk < walks.size(); ++walk) {
-    const auto groups = static_cast<int>(std::floor(walks[walk].groups * density + 0.5));
+    // A share of a group is the chance of one.
+    const double chance = Random(Mix(seed, 0x6A0B + walk)).Uniform();
+    const auto groups = static_cast<int>(std::floor(walks[walk].groups * density + chance));
     for (int i = 0; i < groups; ++i) {
       Group group(walks[walk], Mix(seed, Mix(0x3A1C + walk, static_cast<std::uint64_t>(i))));
       const std::size_t first = trajectories.size();

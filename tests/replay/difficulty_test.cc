@@ -169,13 +169,30 @@ TEST_P(FlightDifficulty, StaysWithinItsBounds) {
 INSTANTIATE_TEST_SUITE_P(
     All, FlightDifficulty,
     testing::Values(Bounds{"01", {3.5, 5}, {0.06, 0.2}, {3, 4.5}, 15, {17, 26}, 15},
+                    Bounds{"02", {6, 12}, {0.3, 0.6}, {2.5, 5}, 8, {12, 24}, 16},
+                    Bounds{"03", {3.2, 7}, {0.2, 0.45}, {4, 7}, 200, {8, 14}, 15},
                     Bounds{"04", {5.5, 10}, {0.01, 0.15}, {1, 2}, 0, {12, 30}, 20},
                     Bounds{"05", {5, 8}, {0.08, 0.3}, {1, 2.2}, 0, {5, 9}, 20},
+                    Bounds{"06", {0.05, 1}, {0, 0.1}, {1.8, 4}, 0, {10, 18}, 14},
                     Bounds{"07", {3.2, 7}, {0.08, 0.3}, {2, 4}, 8, {4, 16}, 16},
                     Bounds{"08", {2, 6}, {0.2, 0.5}, {1.5, 3.5}, 10, {10, 20}, 3},
                     Bounds{"09", {22, 40}, {0.05, 0.25}, {1, 2.2}, 0, {45, 75}, 20},
-                    Bounds{"10", {6, 13}, {0.06, 0.2}, {1.8, 3.5}, 8, {12, 20}, 17}),
+                    Bounds{"10", {6, 13}, {0.06, 0.2}, {1.8, 3.5}, 8, {12, 20}, 17},
+                    Bounds{"s1", {1.2, 6}, {0, 0.1}, {34, 48}, 0, {10, 17}, 18}),
     [](const auto& test) { return FindFlightPlan(test.param.number).name; });
+
+TEST(DatasetB, HasTheFramesAndAboutTheBoxesOfTheThesis) {
+  int frames = 0;
+  double in_sight = 0;
+  for (const FlightPlan& plan : FindFlightPlans("all")) {
+    frames += plan.frames;
+    in_sight += MoversInSight(plan).a_frame * plan.frames;
+  }
+  EXPECT_EQ(frames, 4184);
+  // Of the thesis' 11379 boxes; houses and trees hide some of those in sight.
+  EXPECT_GE(in_sight, 11000);
+  EXPECT_LE(in_sight, 13000);
+}
 
 TEST(OutskirtsDifficulty, SomeVehiclesStopInSight) {
   EXPECT_GE(MoversInSight(FindFlightPlan("01")).that_also_stand, 2);

@@ -254,8 +254,10 @@ TEST(Renderer, TruthKeepsItsRules) {
       for (const LabelledBox& box : *boxes) {
         EXPECT_EQ(box.frame, frame + 1);
         EXPECT_GE(box.visible, box.score > 0 ? kLeastVisible : kLeastMarked);
-        if (box.score == 0) EXPECT_LT(box.visible, kLeastVisible);
-        if (boxes == &truth.decoys) EXPECT_EQ(box.score, 1);
+        EXPECT_EQ(box.score > 0, box.visible >= kLeastVisible);
+        if (boxes == &truth.decoys) {
+          EXPECT_EQ(box.score, 1);
+        }
         EXPECT_GE(std::min(box.box.width, box.box.height), kLeastWidthPx);
         EXPECT_GE(box.box.x, 0);
         EXPECT_GE(box.box.y, 0);

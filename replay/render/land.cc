@@ -36,7 +36,9 @@ struct Reach {
 // of what stands on it.
 void AddReach(const Camera& camera, const FlightPlan& plan, double highest, double begin,
               double end, Reach& reach) {
-  constexpr int kSteps = 16;
+  constexpr int kColumns = 16;
+  // Near the horizon neighbouring rays meet the ground far apart.
+  constexpr int kRows = 192;
   const Eigen::Matrix3d rays = camera.WorldFromPixel();
   const Eigen::Vector2d origin(camera.x_m, camera.y_m);
   const auto add_ray = [&](double u, double v) {
@@ -54,9 +56,9 @@ void AddReach(const Camera& camera, const FlightPlan& plan, double highest, doub
     reach.Add(origin + std::max(0.0, from) * ray.head<2>());
     reach.Add(origin + to * ray.head<2>());
   };
-  for (int i = 0; i <= kSteps; ++i) {
-    for (int j = 0; j <= kSteps; ++j) {
-      add_ray(static_cast<double>(i) / kSteps, static_cast<double>(j) / kSteps);
+  for (int i = 0; i <= kColumns; ++i) {
+    for (int j = 0; j <= kRows; ++j) {
+      add_ray(static_cast<double>(i) / kColumns, static_cast<double>(j) / kRows);
     }
   }
 }

@@ -15,6 +15,9 @@ constexpr float kStep = 0.35F;
 // How far beyond an edge a ray is looked at to know the texel behind it, texels.
 constexpr double kBeyond = 1e-5;
 constexpr double kFar = 1e30;  // depth to an edge that is never met
+// Steps of a beam over the raster, texels.
+constexpr double kLongestStep = 160;
+constexpr double kShortestStep = 3;
 
 }  // namespace
 
@@ -45,18 +48,56 @@ RayCaster::RayCaster(const Terrain& terrain, const Eigen::Vector2d& origin, doub
   inside_y_ = y - Floor(y);
 }
 
-float RayCaster::Ceiling(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const {
-  float ceiling = terrain_.highest_of_all();
-  // The rays lean towards the origin: what can hide the rectangle lies between it and its shift.
-  for (int i = 0; i < 3 && ceiling > 0; ++i) {
-    const double rest = 1 - std::min(1.0, static_cast<double>(ceiling) / height_);
-    const Eigen::Vector2d from = low.cwiseMin(rest * low) * per_metre_;
-    const Eigen::Vector2d to = high.cwiseMax(rest * high) * per_metre_;
-    ceiling =
-        terrain_.HighestIn(from.x() + inside_x_ + base_x_ - 2, from.y() + inside_y_ + base_y_ - 2,
-                           to.x() + inside_x_ + base_x_ + 1, to.y() + inside_y_ + base_y_ + 1);
+RayCaster::FreeWay RayCaster::FreeWayOf(const Beam& beam, double begin, double end) const {
+  double most_drop = beam[0].z();
+  double least_drop = most_drop;
+  double slope = 0;  // of the beam's fastest side over the raster, texels
+  for (const Eigen::Vector3d& ray : beam) {
+    most_drop = std::max(most_drop, ray.z());
+    least_drop = std::min(least_drop, ray.z());
+    slope = std::max(slope, ray.head<2>().cwiseAbs().maxCoeff() * per_metre_);
   }
-  return ceiling;
+  const double highest = terrain_.highest_of_all();
+  if (most_drop > 0) begin = std::max(begin, (height_ - highest) / most_drop);
+  if (begin >= end) return {end, false};
+  // All rays have met the ground from here on.
+  const double ground = least_drop > 0 ? height_ / least_drop : kFar;
+  const double last = std::min(end, ground);
+  const double shortest = kShortestStep / std::max(slope, kShortestStep / (end - begin));
+  FreeWay way = {begin, false};
+  // Mostly the whole rest is free; grazing rays go on in steps.
+  double step = slope * (last - begin) > kLongestStep ? kLongestStep / slope : last - begin;
+  while (way.depth < last) {
+    const double next = std::min(way.depth + step, last);
+    const double lowest = height_ - (most_drop > 0 ? next : way.depth) * most_drop;
+    if (Touches(beam, way.depth, next, std::max(lowest - 1e-3, 0.0))) {
+      step *= 0.5;
+      if (step < shortest) break;
+      continue;
+    }
+    way.depth = next;
+    step = std::min(1.5 * step, kLongestStep / std::max(slope, kLongestStep / (end - begin)));
+  }
+  way.flat = way.depth == ground;
+  // Else some rays have met the ground before.
+  if (!way.flat && most_drop > 0) way.depth = std::min(way.depth, height_ / most_drop);
+  return way;
+}
+
+// Whether the beam, between the two depths, is over anything higher than this, m.
+bool RayCaster::Touches(const Beam& beam, double near, double far, double metres) const {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(kFar);
+  Eigen::Vector2d high = -low;
+  for (const Eigen::Vector3d& ray : beam) {
+    const Eigen::Vector2d flat = per_metre_ * ray.head<2>();
+    low = low.cwiseMin(near * flat).cwiseMin(far * flat);
+    high = high.cwiseMax(near * flat).cwiseMax(far * flat);
+  }
+  // A little more, for the rounding of rays.
+  const double x = inside_x_ + base_x_;
+  const double y = inside_y_ + base_y_;
+  return terrain_.MayExceed(low.x() + x - 0.01, low.y() + y - 0.01, high.x() + x + 0.01,
+                            high.y() + y + 0.01, metres);
 }
 
 Hit RayCaster::At(const Walk& walk, double depth, float height, Hit::Kind kind) const {
@@ -153,10 +194,7 @@ Hit RayCaster::Cast(const Eigen::Vector3d& direction, double begin, double end) 
   const double beyond = kBeyond * std::min(std::abs(walk.per_x), std::abs(walk.per_y));
   const auto width = static_cast<unsigned>(terrain_.width());
   const auto height = static_cast<unsigned>(terrain_.height());
-  // Flat rays start with large steps.
-  const double way = (end - begin) * std::max(std::abs(walk.slope_x), std::abs(walk.slope_y));
-  const double down = walk.drop > 0 ? (height_ / walk.drop - begin) / (end - begin) : 1.0;
-  int level = way * down > 96 ? 3 : way * down > 24 ? 2 : 1;
+  int level = 1;
   walk.depth = begin;
   while (walk.depth < end) {
     const double inside = walk.depth + beyond;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 
 #include "replay/render/terrain.h"
@@ -38,12 +39,18 @@ class RayCaster {
   // Where the direction, which goes down, meets height 0: for places where nothing is higher.
   Hit Ground(const Eigen::Vector3d& direction) const;
 
-  // A height that no ray exceeds where it meets something, m: for rays that meet the ground in this
-  // rectangle, given as m from the origin.
-  float Ceiling(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const;
+  // The rays between four, all from the same origin; the first two corners span one side.
+  using Beam = std::array<Eigen::Vector3d, 4>;
+  // How far from `begin` on, and at most to `end`, no ray of a beam can meet anything.
+  struct FreeWay {
+    double depth = 0;
+    bool flat = false;  // all of the rays meet height 0 before `end` and nothing before
+  };
+  FreeWay FreeWayOf(const Beam& beam, double begin, double end) const;
 
  private:
   struct Walk;
+  bool Touches(const Beam& beam, double near, double far, double metres) const;
   bool CrossBlock(Walk& walk, Hit& hit) const;
   bool MeetColumn(const Walk& walk, double leave, Hit& hit) const;
   Hit At(const Walk& walk, double depth, float height, Hit::Kind kind) const;

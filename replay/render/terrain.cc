@@ -107,20 +107,28 @@ void Terrain::FindHighest() {
   highest_of_all_ = HeightMetres(*std::max_element(largest.begin(), largest.end()));
 }
 
-float Terrain::HighestIn(double x0, double y0, double x1, double y1) const {
-  constexpr int kLevel = 2;
-  const auto block = [](double texel, int end) {
-    const double clamped = std::clamp(texel + 0.5, 0.0, static_cast<double>(end - 1));
-    return static_cast<int>(clamped) >> (kBlockShift * kLevel);
+bool Terrain::MayExceed(double x0, double y0, double x1, double y1, double metres) const {
+  constexpr int kMostBlocks = 3;  // to a side
+  const auto texel = [](double at, int end) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(end - 1)));
   };
-  Height most = 0;
-  const int first = block(x0, width());
-  const int last = block(x1, width());
-  for (int y = block(y0, height()); y <= block(y1, height()); ++y) {
-    const Height* row = highest(kLevel) + static_cast<std::size_t>(y) * block_width(kLevel);
-    for (int x = first; x <= last; ++x) most = std::max(most, row[x]);
+  const int left = texel(x0, width());
+  const int right = texel(x1, width());
+  const int top = texel(y0, height());
+  const int bottom = texel(y1, height());
+  int level = 1;
+  while (level < kBlockLevels &&
+         std::max(right - left, bottom - top) >> (kBlockShift * level) > kMostBlocks) {
+    ++level;
   }
-  return HeightMetres(most);
+  const int shift = kBlockShift * level;
+  for (int y = top >> shift; y <= bottom >> shift; ++y) {
+    const Height* row = highest(level) + static_cast<std::size_t>(y) * block_width(level);
+    for (int x = left >> shift; x <= right >> shift; ++x) {
+      if (HeightMetres(row[x]) > metres) return true;
+    }
+  }
+  return false;
 }
 
 bool Terrain::MayBeShaded(int block_x, int block_y, float step_x, float step_y, float rise) const {

@@ -78,9 +78,9 @@ class Terrain {
   int block_width(int level) const { return width() >> (kBlockShift * level); }
   // The greatest height of all, m.
   float highest_of_all() const { return highest_of_all_; }
-  // No texel of the rectangle, counted from the raster's first one, is higher than this, m. The
-  // rectangle may reach outside.
-  float HighestIn(double x0, double y0, double x1, double y1) const;
+  // False where no texel that the rectangle touches is higher than this, m. Texel i reaches from i
+  // to i + 1 here, counted from the raster's first one; the rectangle may reach outside.
+  bool MayExceed(double x0, double y0, double x1, double y1, double metres) const;
 
   // Share of the sun that reaches a spot of the map, 0 to 1; 1 outside the raster.
   float SunAt(const Eigen::Vector2d& spot) const;

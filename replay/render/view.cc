@@ -15,7 +15,7 @@ namespace windhover::replay {
 namespace {
 
 // Side of the squares of pixels that share a bound on the height of what they see.
-constexpr int kCell = 8;
+constexpr int kCell = 4;
 // A body this much behind the surface of the land is still seen, m: it stands on it.
 constexpr float kContact = 0.08F;
 // A shadow falls on what is this near to its height, m.
@@ -46,39 +46,34 @@ void View::Draw(const Instant& instant, int first_row, double shift_x, double sh
 class View::LandPainter {
  public:
   explicit LandPainter(const Instant& instant)
-      : camera_(instant.camera), scene_(instant.scene), levels_(instant.land.levels()) {
+      : camera_(instant.camera),
+        scene_(instant.scene),
+        levels_(instant.land.levels()),
+        ways_(levels_.size()) {
     for (const Land::Level& level : levels_) {
       casters_.emplace_back(*level.terrain, Eigen::Vector2d(camera_.x_m, camera_.y_m),
                             camera_.altitude_m);
       shadings_.emplace_back(scene_, *level.terrain, instant.time_s);
-      highest_ = std::max(highest_, static_cast<double>(level.terrain->highest_of_all()));
     }
   }
 
-  // A height that no ray of a cell exceeds where it meets something, m. The corners' rays.
-  double Ceiling(const std::array<Eigen::Vector3d, 4>& rays) const {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
-    Eigen::Vector2d high = -low;
-    for (const Eigen::Vector3d& ray : rays) {
-      // All of the cell meets the ground within the finest raster's range.
-      if (ray.z() * levels_.front().end_m <= camera_.altitude_m) return kNoCeiling;
-      const Eigen::Vector2d spot = camera_.altitude_m / ray.z() * ray.head<2>();
-      low = low.cwiseMin(spot);
-      high = high.cwiseMax(spot);
-    }
-    return casters_.front().Ceiling(low, high);
-  }
-
-  Pixel Look(const Eigen::Vector3d& ray, double ceiling) const {
+  // Where the rays of a cell begin to be looked at, for each level.
+  void Aim(const RayCaster::Beam& beam) {
     double begin = 0;
-    if (ray.z() > 0) {
-      begin = std::max(0.0, (camera_.altitude_m - std::min(ceiling, highest_)) / ray.z());
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      ways_[i] = casters_[i].FreeWayOf(beam, begin, levels_[i].end_m);
+      begin = levels_[i].end_m;
+      if (ways_[i].flat) break;
     }
+  }
+
+  // What a ray of the cell that was aimed at last shows.
+  Pixel Look(const Eigen::Vector3d& ray) const {
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       const double end = levels_[i].end_m;
-      if (begin >= end || (ray.z() <= 0 && camera_.altitude_m > highest_)) continue;
-      const Hit hit = ceiling <= 0 ? casters_[i].Ground(ray) : casters_[i].Cast(ray, begin, end);
-      begin = end;
+      const RayCaster::FreeWay& way = ways_[i];
+      if (way.depth >= end) continue;
+      const Hit hit = way.flat ? casters_[i].Ground(ray) : casters_[i].Cast(ray, way.depth, end);
       if (hit.kind == Hit::Kind::kNone) continue;
       const double length = ray.norm();
       const double across = hit.depth * length / camera_.focal_px;
@@ -94,8 +89,6 @@ class View::LandPainter {
     }
     return Beyond(ray);
   }
-
-  static constexpr double kNoCeiling = 1e9;
 
  private:
   // Where no raster reaches: the plain that goes on for ever, or sky.
@@ -114,11 +107,11 @@ class View::LandPainter {
   const std::vector<Land::Level>& levels_;
   std::vector<RayCaster> casters_;
   std::vector<Shading> shadings_;
-  double highest_ = 0;  // m, of all levels
+  std::vector<RayCaster::FreeWay> ways_;
 };
 
 void View::DrawLand(const Instant& instant) {
-  const LandPainter painter(instant);
+  LandPainter painter(instant);
   const auto ray = [this](int x, int row) -> Eigen::Vector3d {
     return rays_ * Eigen::Vector3d(x, first_row_ + row, 1);
   };
@@ -127,12 +120,11 @@ void View::DrawLand(const Instant& instant) {
     for (int cell_x = 0; cell_x < width_; cell_x += kCell) {
       const int end_row = std::min(rows_, cell_row + kCell);
       const int end_x = std::min(width_, cell_x + kCell);
-      const double ceiling =
-          painter.Ceiling({ray(cell_x, cell_row), ray(end_x - 1, cell_row),
-                           ray(cell_x, end_row - 1), ray(end_x - 1, end_row - 1)});
+      painter.Aim({ray(cell_x, cell_row), ray(end_x - 1, cell_row), ray(cell_x, end_row - 1),
+                   ray(end_x - 1, end_row - 1)});
       for (int row = cell_row; row < end_row; ++row) {
         for (int x = cell_x; x < end_x; ++x) {
-          pixels_[static_cast<std::size_t>(row) * width_ + x] = painter.Look(ray(x, row), ceiling);
+          pixels_[static_cast<std::size_t>(row) * width_ + x] = painter.Look(ray(x, row));
         }
       }
     }

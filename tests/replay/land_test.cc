@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "replay/render/land.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -90,18 +92,35 @@ TEST(RayCaster, FindsWhatAStepByStepSearchFinds) {
   EXPECT_GT(hits, 350);
 }
 
-TEST(RayCaster, TheCeilingIsAboveEveryHit) {
+TEST(RayCaster, ABeamIsFreeAsLongAsAllItsRaysAre) {
   const Terrain& terrain = SmallTerrain();
-  const RayCaster caster(terrain, {3, 4}, 40);
   Random random(12);
-  for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector2d low(random.Uniform(-20, 18), random.Uniform(-20, 18));
-    const Eigen::Vector2d high = low + Eigen::Vector2d(2, 2);
-    const double ceiling = caster.Ceiling(low, high);
-    const Eigen::Vector2d spot = low + 2 * Eigen::Vector2d(random.Uniform(), random.Uniform());
-    const Eigen::Vector3d direction = Eigen::Vector3d(spot.x(), spot.y(), 40).normalized();
-    EXPECT_LE(caster.Cast(direction, 0, 100).height, ceiling + 1e-3);
+  int flat = 0;
+  int short_of_a_hit = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const RayCaster caster(terrain, {random.Uniform(-20, 20), random.Uniform(-20, 20)},
+                           random.Uniform(2, 40));
+    const Eigen::Vector3d axis(random.Uniform(-1, 1), random.Uniform(-1, 1),
+                               random.Uniform(-0.1, 1));
+    const Eigen::Vector3d across = 0.05 * Eigen::Vector3d::Random();
+    const Eigen::Vector3d down = 0.05 * Eigen::Vector3d::Random();
+    const RayCaster::FreeWay way =
+        caster.FreeWayOf({axis, axis + across, axis + down, axis + across + down}, 0, 60);
+    for (int j = 0; j < 10; ++j) {
+      const Eigen::Vector3d ray = axis + random.Uniform() * across + random.Uniform() * down;
+      const Hit hit = caster.Cast(ray, 0, 60);
+      if (hit.kind == Hit::Kind::kNone) continue;
+      if (way.flat) {
+        EXPECT_NEAR(hit.height, 0, 1e-3) << i;
+        ++flat;
+      } else {
+        EXPECT_GE(hit.depth, way.depth - 1e-6) << i;
+        if (way.depth > 0.5 * hit.depth) ++short_of_a_hit;
+      }
+    }
   }
+  EXPECT_GT(flat, 500);
+  EXPECT_GT(short_of_a_hit, 500);
 }
 
 TEST(RayCaster, SeesTheGroundUnderABridgeAndNotThroughItsDeck) {
@@ -138,6 +157,34 @@ TEST(Terrain, ATexelDoesNotDependOnTheRectangle) {
     }
   }
   EXPECT_GT(raised, 0);
+}
+
+TEST(Land, ReachesAsFarAsTheGroundIsSeen) {
+  FlightPlan plan = FindFlightPlan("valley");
+  plan.width = 90;
+  plan.height = 72;
+  const Scene scene = BuildScene(plan);
+  const CameraPath path(plan.camera, plan.width, plan.height, plan.seed);
+  const Land land(scene, plan, path, 1, 2);
+  const Camera camera = path.At(0);
+  int seen = 0;
+  for (double y = 0; y < plan.height; y += 0.1) {
+    for (int x = 0; x < plan.width; x += 8) {
+      const Eigen::Vector3d ray = camera.WorldFromPixel() * Eigen::Vector3d(x, y, 1);
+      if (ray.z() <= 0 || camera.altitude_m / ray.z() >= land.levels().back().end_m) continue;
+      double begin = 0;
+      bool met = false;
+      for (const Land::Level& level : land.levels()) {
+        const RayCaster caster(*level.terrain, {camera.x_m, camera.y_m}, camera.altitude_m);
+        met = met || caster.Cast(ray, begin, level.end_m).kind != Hit::Kind::kNone;
+        begin = level.end_m;
+      }
+      EXPECT_TRUE(met) << x << " " << y;
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 3000);
+  EXPECT_GT(land.levels().back().end_m, 5000);
 }
 
 TEST(Clip, KeepsWhatLiesBeforeTheCamera) {

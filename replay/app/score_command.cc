@@ -16,7 +16,7 @@
 #include "replay/format/format_error.h"
 #include "replay/format/homographies.h"
 #include "replay/format/text_lines.h"
-#include "replay/offline/pair_registration.h"
+#include "replay/offline/product_registration.h"
 
 namespace windhover::replay {
 namespace {
@@ -115,12 +115,15 @@ void ScoreWithoutTruth(const ScoreSettings& settings) {
       Backend::Create(settings.device, [](const std::string& line) {
         std::fprintf(stderr, "windhover-replay: %s\n", line.c_str());
       });
-  std::optional<PairRegistration> registration;
+  // The second picture of a pair has the first to go by, and no anchor.
+  RegistrationOptions registration_options;
+  registration_options.reference = ReferenceMode::kCentre;
+  std::optional<ProductRegistration> registration;
   const PairRegister at_once = [&](const cv::Mat& first, const cv::Mat& second) {
     if (!registration) {
-      registration.emplace(backend, first.cols, first.rows, RegistrationOptions());
+      registration.emplace(backend, first.cols, first.rows, registration_options);
     }
-    return registration->Register(first, second);
+    return RegisterPair(*registration, first, second);
   };
   Progress progress("scoring", static_cast<int>(first_from_frame.size()));
   const std::unique_ptr<FrameSource> source = video.open_frames();

@@ -22,6 +22,14 @@ class RegistrationPeer {
   virtual void Reset() = 0;
 };
 
+// first_from_second of two pictures of the peer's size that need not follow each other.
+inline std::optional<Eigen::Matrix3d> RegisterPair(RegistrationPeer& peer, const cv::Mat& first,
+                                                   const cv::Mat& second) {
+  peer.Reset();
+  peer.Register(first);
+  return peer.Register(second);
+}
+
 // The homography b_from_a by RANSAC from points that are seen in both pictures: an inlier lies
 // within `ransac_px` of where it belongs. Nothing for less than four points, where RANSAC finds
 // none, and where h33 is 0.

@@ -12,10 +12,10 @@
 #include <system_error>
 #include <vector>
 
-#include "replay/benchmarks/product_registration.h"
 #include "replay/benchmarks/timing.h"
 #include "replay/format/format_error.h"
 #include "replay/format/frame_source.h"
+#include "replay/offline/product_registration.h"
 
 namespace windhover::replay {
 namespace {

@@ -6,45 +6,14 @@
 #include <gst/video/video.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <memory>
 #include <stdexcept>
+
+#include "service/gstreamer/objects.h"
+#include "service/gstreamer/start.h"
 
 namespace windhover::replay {
 namespace {
-
-namespace fs = std::filesystem;
-
-template <auto Release>
-struct Releaser {
-  template <typename T>
-  void operator()(T* object) const {
-    Release(object);
-  }
-};
-template <typename T>
-using ObjectPtr = std::unique_ptr<T, Releaser<gst_object_unref>>;
-
-// The folder of the plugin that was built or installed with this program; empty where there is
-// none.
-fs::path PluginFolder() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  for (const char* lib : {"lib", WINDHOVER_INSTALL_LIBDIR}) {
-    const fs::path folder = program.parent_path().parent_path() / lib / "gstreamer-1.0";
-    if (fs::exists(folder / "libgstwindhover.so", error)) return folder;
-  }
-  return {};
-}
-
-bool KnowsElements() {
-  GstElementFactory* factory = gst_element_factory_find("whregister");
-  if (factory != nullptr) gst_object_unref(factory);
-  return factory != nullptr;
-}
 
 void SetProperties(GstElement* pipeline, const PipelineSettings& settings) {
   GstIterator* elements = gst_bin_iterate_elements(GST_BIN(pipeline));
@@ -54,14 +23,7 @@ void SetProperties(GstElement* pipeline, const PipelineSettings& settings) {
     const GstElementFactory* factory = gst_element_get_factory(GST_ELEMENT(element));
     if (!g_str_has_prefix(GST_OBJECT_NAME(factory), "wh")) return;
     for (const auto& [name, value] : static_cast<const PipelineSettings*>(data)->properties) {
-      const GParamSpec* spec =
-          g_object_class_find_property(G_OBJECT_GET_CLASS(element), name.c_str());
-      if (spec == nullptr) continue;
-      if (spec->value_type == G_TYPE_STRING) {
-        g_object_set(element, name.c_str(), value.c_str(), nullptr);
-      } else {
-        gst_util_set_object_arg(element, name.c_str(), value.c_str());
-      }
+      SetProperty(element, name, value);
     }
   };
   gst_iterator_foreach(elements, set, const_cast<PipelineSettings*>(&settings));
@@ -143,31 +105,6 @@ void AwaitEnd(GstElement* pipeline) {
 }
 
 }  // namespace
-
-// service/app/pipeline.cc does the same: nothing that both may include knows GStreamer.
-void StartGStreamer() {
-  const fs::path folder = PluginFolder();
-  const bool told =
-      std::getenv("GST_PLUGIN_PATH") != nullptr || std::getenv("GST_PLUGIN_PATH_1_0") != nullptr;
-  // GStreamer keeps the first file of a name that it meets, and this path comes before its own.
-  if (!told && !folder.empty()) ::setenv("GST_PLUGIN_PATH", folder.c_str(), 1);
-  gst_init(nullptr, nullptr);
-  if (!KnowsElements() && !folder.empty()) {
-    gst_registry_scan_path(gst_registry_get(), folder.c_str());
-  }
-  if (!KnowsElements()) {
-    throw std::runtime_error(
-        "GStreamer does not find the elements of Windhover: set GST_PLUGIN_PATH to the folder of "
-        "libgstwindhover.so");
-  }
-}
-
-std::string PluginFile() {
-  const ObjectPtr<GstElementFactory> factory(gst_element_factory_find("whregister"));
-  const ObjectPtr<GstPlugin> plugin(
-      gst_plugin_feature_get_plugin(GST_PLUGIN_FEATURE(factory.get())));
-  return gst_plugin_get_filename(plugin.get());
-}
 
 void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
                          const PipelineSettings& settings,

@@ -18,14 +18,6 @@ struct PipelineSettings {
   std::vector<std::pair<std::string, std::string>> properties;
 };
 
-// gst_init with the product's elements known: those that lie beside the program's own folder,
-// before any others of that name that are installed, unless GST_PLUGIN_PATH says where they are.
-// The first call sets GST_PLUGIN_PATH: make it before there are threads. Throws std::runtime_error
-// where they are not found.
-void StartGStreamer();
-// The file that the elements come from, once GStreamer is started.
-std::string PluginFile();
-
 // Plays frames that lie in memory through a GStreamer pipeline as fast as it takes them, and calls
 // `leave` with each buffer that comes out, on the pipeline's own thread; returns after the last
 // one. `frames` are all BGR (CV_8UC3) or all I420 as cv::cvtColor makes it (CV_8UC1, 1.5 times the

@@ -11,7 +11,6 @@
 #include "replay/benchmarks/dataset.h"
 #include "replay/benchmarks/first_frame.h"
 #include "replay/benchmarks/option_list.h"
-#include "replay/benchmarks/product_registration.h"
 #include "replay/benchmarks/registration_peers.h"
 #include "replay/benchmarks/registration_results.h"
 #include "replay/benchmarks/stress_benchmark.h"
@@ -19,6 +18,7 @@
 #include "replay/benchmarks/timing.h"
 #include "replay/format/frame_source.h"
 #include "replay/format/truth.h"
+#include "replay/offline/product_registration.h"
 #include "replay/scoring/registration_score.h"
 
 namespace windhover::replay {

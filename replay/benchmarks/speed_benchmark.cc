@@ -3,7 +3,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -14,10 +13,11 @@
 #include "replay/baselines/klt_registration.h"
 #include "replay/benchmarks/pipeline_run.h"
 #include "replay/benchmarks/timing.h"
+#include "replay/offline/product_registration.h"
 #include "replay/render/parallel.h"
 #include "replay/render/renderer.h"
 #include "replay/scoring/registration_score.h"
-#include "service/vision/registration.h"
+#include "service/gstreamer/start.h"
 
 namespace windhover::replay {
 namespace {
@@ -127,16 +127,10 @@ class RegistrationContestant : public Contestant {
   }
 
   void TimeFrames(const Flight& flight) override {
-    StreamRegistration registration(backend_, flight.width, flight.height, options_);
-    GrayImage image = backend_->MakeImage<std::uint8_t>(flight.width, flight.height);
+    ProductRegistration registration(backend_, flight.width, flight.height, options_);
     TimeRegistration(flight, [&](const cv::Mat& gray) {
-      {
-        const MappedImage<std::uint8_t> pixels = image.Write();
-        for (int y = 0; y < gray.rows; ++y) {
-          std::memcpy(pixels.row(y), gray.ptr(y), static_cast<std::size_t>(gray.cols));
-        }
-      }
-      return registration.Register(image).previous_from_frame;
+      registration.Register(gray);
+      return registration.last().previous_from_frame;
     });
   }
 

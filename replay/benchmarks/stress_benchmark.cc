@@ -8,11 +8,11 @@
 #include <optional>
 #include <utility>
 
-#include "replay/benchmarks/product_registration.h"
 #include "replay/benchmarks/registration_peers.h"
 #include "replay/benchmarks/stress_pairs.h"
 #include "replay/format/format_error.h"
 #include "replay/format/sequence.h"
+#include "replay/offline/product_registration.h"
 #include "replay/scoring/registration_score.h"
 
 namespace windhover::replay {
@@ -127,9 +127,8 @@ std::vector<StressBenchmark::Entry>& StressBenchmark::EntriesFor(cv::Size size) 
 // Nothing where there is no truth.
 std::optional<double> StressBenchmark::Register(Entry& entry, const StressPair& pair) {
   progress_.check();
-  entry.peer->Reset();
-  entry.peer->Register(pair.reference);
-  const std::optional<Eigen::Matrix3d> found = entry.peer->Register(pair.frame);
+  const std::optional<Eigen::Matrix3d> found =
+      RegisterPair(*entry.peer, pair.reference, pair.frame);
   if (!pair.reference_from_frame) return std::nullopt;
   return PairRms(found, *pair.reference_from_frame, pair.frame.cols, pair.frame.rows);
 }

@@ -3,69 +3,17 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
 namespace windhover {
 namespace {
 
-namespace fs = std::filesystem;
-
-using Pad = std::unique_ptr<GstPad, ObjectDeleter>;
-
-Pad StaticPad(GstElement* element, const char* name) {
-  return Pad(gst_element_get_static_pad(element, name));
-}
-
-void SetText(GObject* object, const std::string& name, const std::string& value) {
-  const GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(object), name.c_str());
-  if (spec->value_type == G_TYPE_STRING) {
-    g_object_set(object, name.c_str(), value.c_str(), nullptr);
-  } else {
-    gst_util_set_object_arg(object, name.c_str(), value.c_str());
-  }
-}
-
-// The folder of the plugin that was built or installed with this program; empty where there is
-// none.
-fs::path PluginFolder() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  for (const char* lib : {"lib", WINDHOVER_INSTALL_LIBDIR}) {
-    const fs::path folder = program.parent_path().parent_path() / lib / "gstreamer-1.0";
-    if (fs::exists(folder / "libgstwindhover.so", error)) return folder;
-  }
-  return {};
-}
-
-bool KnowsElements() {
-  GstElementFactory* factory = gst_element_factory_find("whregister");
-  if (factory != nullptr) gst_object_unref(factory);
-  return factory != nullptr;
+ObjectPtr<GstPad> StaticPad(GstElement* element, const char* name) {
+  return ObjectPtr<GstPad>(gst_element_get_static_pad(element, name));
 }
 
 }  // namespace
-
-// replay/benchmarks/pipeline_run.cc does the same: nothing that both may include knows GStreamer.
-void StartGStreamer() {
-  const fs::path folder = PluginFolder();
-  const bool told =
-      std::getenv("GST_PLUGIN_PATH") != nullptr || std::getenv("GST_PLUGIN_PATH_1_0") != nullptr;
-  // GStreamer keeps the first file of a name that it meets, and this path comes before its own.
-  if (!told && !folder.empty()) ::setenv("GST_PLUGIN_PATH", folder.c_str(), 1);
-  gst_init(nullptr, nullptr);
-  if (!KnowsElements() && !folder.empty()) {
-    gst_registry_scan_path(gst_registry_get(), folder.c_str());
-  }
-  if (!KnowsElements()) {
-    throw std::runtime_error(
-        "GStreamer does not find the elements of Windhover: set GST_PLUGIN_PATH to the folder of "
-        "libgstwindhover.so");
-  }
-}
 
 Pipeline::Pipeline(const Source& source, const std::string& video_path)
     : pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new("windhover")))) {
@@ -178,10 +126,7 @@ void Pipeline::AddVideo(const std::string& path) {
 
 void Pipeline::Set(const OptionSetting& setting) {
   for (GstElement* element : ours_) {
-    if (g_object_class_find_property(G_OBJECT_GET_CLASS(element), setting.name.c_str()) !=
-        nullptr) {
-      SetText(G_OBJECT(element), setting.name, setting.value);
-    }
+    SetProperty(G_OBJECT(element), setting.name, setting.value);
   }
 }
 
@@ -210,7 +155,7 @@ void Pipeline::OnPad(GstPad* pad) {
   const bool video =
       g_str_has_prefix(gst_structure_get_name(gst_caps_get_structure(caps, 0)), "video/");
   gst_caps_unref(caps);
-  const Pad head = StaticPad(head_, "sink");
+  const ObjectPtr<GstPad> head = StaticPad(head_, "sink");
   if (video && !gst_pad_is_linked(head.get())) {
     gst_pad_link(pad, head.get());
     return;

@@ -6,24 +6,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "service/app/option_settings.h"
 #include "service/app/source.h"
+#include "service/gstreamer/objects.h"
 
 namespace windhover {
-
-struct ObjectDeleter {
-  void operator()(gpointer object) const { gst_object_unref(object); }
-};
-
-// gst_init with the elements of ours known: those that lie beside the executable, before any others
-// of that name that are installed, unless GST_PLUGIN_PATH says where they are. Call before there
-// are threads: it sets GST_PLUGIN_PATH. Throws std::runtime_error where they are not found.
-void StartGStreamer();
 
 // The main job's pipeline: source ! whregister ! whbackground ! whmotion ! whpublish ! whoverlay
 // and, where there is a path for it, an H.264 file. Frames are counted on the way. Its messages go
@@ -71,7 +62,7 @@ class Pipeline {
   void OnVideoCaps(const GstCaps* caps);
   void SeeTime(GstPad* pad, const GstBuffer* buffer);
 
-  std::unique_ptr<GstElement, ObjectDeleter> pipeline_;
+  ObjectPtr<GstElement> pipeline_;
   GstElement* head_ = nullptr;     // takes the frames
   GstElement* last_ = nullptr;     // what Append links to
   GstElement* crop_ = nullptr;     // makes the sides even for the encoder

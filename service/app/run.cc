@@ -24,6 +24,7 @@
 #include "service/app/run_outcome.h"
 #include "service/app/subscriber_process.h"
 #include "service/dds/log.h"
+#include "service/gstreamer/start.h"
 
 namespace windhover {
 namespace {

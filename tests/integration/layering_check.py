@@ -20,6 +20,7 @@ MAY_INCLUDE = {
     "service/options/": (),
     "service/vision/": ("service/options/", "gpu-kernels/"),
     "service/dds/": ("service/options/", "service/vision/types.h", "idl/"),
+    "service/gstreamer/": (),
     "service/app/": ("service/", "gpu-kernels/"),
     "gst-plugins/": (
         "service/options/",
@@ -29,7 +30,7 @@ MAY_INCLUDE = {
         "gpu-kernels/image.h",
         "gpu-kernels/multiversion.h",  # a macro; nothing to link with
     ),
-    "replay/": ("service/options/", "service/vision/", "gpu-kernels/"),
+    "replay/": ("service/options/", "service/vision/", "service/gstreamer/", "gpu-kernels/"),
     "deploy/": (),
     # The operators can be built and tested alone, on a machine that has nothing but a GPU.
     "tests/gpu-kernels/": ("gpu-kernels/", "tests/support/"),
@@ -40,7 +41,7 @@ MAY_INCLUDE = {
 BELONGS_TO = {
     "CL/": ("gpu-kernels/opencl/",),
     "fftw3.h": ("gpu-kernels/", "tests/gpu-kernels/"),
-    "gst/": ("gst-plugins/", "service/app/", "replay/benchmarks/", "tests/"),
+    "gst/": ("service/gstreamer/", "service/app/", "gst-plugins/", "replay/benchmarks/", "tests/"),
     "dds/": ("service/dds/", "tests/"),
     "idl/": ("service/dds/", "tests/"),
     "CLI/": ("service/app/", "replay/", "tests/"),

@@ -30,6 +30,8 @@ FORBIDDEN = [
     ("service/vision/motion.cc", '#include "../options/option.h"'),
     ("service/dds/publisher.cc", '#include "service/vision/motion.h"'),
     ("service/dds/publisher.cc", '#include "gpu-kernels/backend.h"'),
+    ("service/gstreamer/start.cc", '#include "service/app/run.h"'),
+    ("service/gstreamer/start.cc", "#include <dds/dds.h>"),
     ("service/app/run.cc", '#include "gst-plugins/homography_meta.h"'),
     ("service/app/run.cc", '#include "replay/format/sequence.h"'),
     ("gst-plugins/whregister.cc", '#include "service/app/run.h"'),
@@ -51,7 +53,10 @@ ALLOWED = [
     ("service/app/run.cc", '#include "service/dds/subscriber.h"'),
     ("service/app/run.cc", "#include <gst/gst.h>"),
     ("gst-plugins/whregister.cc", '#include "gpu-kernels/backend.h"'),
+    ("service/gstreamer/start.cc", "#include <gst/gst.h>"),
+    ("service/app/run.cc", '#include "service/gstreamer/start.h"'),
     ("replay/render/render.cc", '#include "gpu-kernels/backend.h"'),
+    ("replay/benchmarks/pipeline.cc", '#include "service/gstreamer/start.h"'),
     ("tests/gst-plugins/whregister_test.cc", '#include "gst-plugins/homography_meta.h"'),
 ]
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "service/gstreamer/start.h"
 #include "tests/service/app_process.h"
 
 namespace windhover::replay {

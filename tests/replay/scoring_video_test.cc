@@ -13,7 +13,7 @@
 
 #include "gpu-kernels/backend.h"
 #include "replay/format/format_error.h"
-#include "replay/offline/pair_registration.h"
+#include "replay/offline/product_registration.h"
 #include "replay/scoring/ground_residual.h"
 #include "replay/scoring/video_score.h"
 
@@ -242,15 +242,15 @@ cv::Mat Rough(double left, unsigned seed) {
       left, 2, seed);
 }
 
-TEST(PairRegistration, RegistersTwoPictures) {
-  PairRegistration registration(Backend::Create("cpu"), kWidth, kHeight, RegistrationOptions());
+TEST(ProductRegistration, RegistersTwoPictures) {
+  ProductRegistration registration(Backend::Create("cpu"), kWidth, kHeight, RegistrationOptions());
   for (const double shift : {6.0, -9.0}) {
-    const auto found = registration.Register(Rough(0, 1), Rough(shift, 2));
+    const auto found = RegisterPair(registration, Rough(0, 1), Rough(shift, 2));
     ASSERT_TRUE(found) << shift;
     EXPECT_LT((*found - Shift(shift)).norm(), 0.1) << shift << "\n" << *found;
   }
   // Nothing in common, nothing to see.
-  EXPECT_FALSE(registration.Register(Rough(0, 1), cv::Mat::zeros(kHeight, kWidth, CV_8UC1)));
+  EXPECT_FALSE(RegisterPair(registration, Rough(0, 1), cv::Mat::zeros(kHeight, kWidth, CV_8UC1)));
 }
 
 }  // namespace

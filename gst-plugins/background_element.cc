@@ -6,9 +6,9 @@
 
 #include "gst-plugins/debug.h"
 #include "gst-plugins/evidence_meta.h"
-#include "gst-plugins/homography_meta.h"
 #include "gst-plugins/luma.h"
 #include "gst-plugins/video_frame_map.h"
+#include "service/gstreamer/homography_meta.h"
 
 namespace windhover {
 

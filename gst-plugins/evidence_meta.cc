@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "gst-plugins/meta_registration.h"
+#include "service/gstreamer/meta_registration.h"
 
 namespace windhover {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gst-plugins/detection_meta.h"
 #include "gst-plugins/evidence_meta.h"
+#include "service/gstreamer/detection_meta.h"
 
 namespace windhover {
 

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "gst-plugins/detection_meta.h"
-#include "gst-plugins/homography_meta.h"
 #include "gst-plugins/video_frame_map.h"
+#include "service/gstreamer/detection_meta.h"
+#include "service/gstreamer/homography_meta.h"
 
 namespace windhover {
 

@@ -2,11 +2,11 @@
 #include <gst/gst.h>
 
 #include "gst-plugins/background_element.h"
-#include "gst-plugins/homography_meta.h"
 #include "gst-plugins/motion_element.h"
 #include "gst-plugins/overlay_element.h"
 #include "gst-plugins/publish_element.h"
 #include "gst-plugins/register_element.h"
+#include "service/gstreamer/homography_meta.h"
 
 namespace {
 

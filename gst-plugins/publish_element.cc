@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "gst-plugins/debug.h"
-#include "gst-plugins/detection_meta.h"
-#include "gst-plugins/homography_meta.h"
+#include "service/gstreamer/detection_meta.h"
+#include "service/gstreamer/homography_meta.h"
 
 namespace windhover {
 namespace {

@@ -18,9 +18,10 @@
 #include "replay/format/frame_source.h"
 #include "replay/format/homographies.h"
 #include "replay/format/labels.h"
+#include "replay/format/pending_file.h"
 #include "replay/format/sequence.h"
 #include "replay/format/truth.h"
-#include "replay/offline/offline_detection.h"
+#include "replay/offline/detection.h"
 #include "replay/offline/overlay.h"
 
 namespace windhover::replay {
@@ -34,6 +35,7 @@ struct DetectSettings {
   std::filesystem::path overlay;
   int every = 10;
   int frames = 0;
+  bool video = false;
 };
 
 using BoxesByFrame = std::map<int, std::vector<LabelledBox>>;
@@ -71,67 +73,39 @@ void CheckLength(const DetectSettings& settings, const Truth& truth, int frames)
                                          "; --frames compares only so many from the start");
 }
 
-void CheckSize(const DetectSettings& settings, const Truth& truth, const cv::Mat& frame) {
-  const auto text = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  if (frame.cols == truth.sequence.width() && frame.rows == truth.sequence.height()) return;
-  throw FormatError(settings.source, "is of " + text(frame.cols, frame.rows) +
-                                         " px, but the truth of " +
+void CheckSize(const DetectSettings& settings, const Truth& truth, int width, int height) {
+  const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+  if (width == truth.sequence.width() && height == truth.sequence.height()) return;
+  throw FormatError(settings.source, "is of " + text(width, height) + " px, but the truth of " +
                                          text(truth.sequence.width(), truth.sequence.height()));
 }
 
-// How many frames there should be; 0 where nothing says.
-int FramesToCome(const DetectSettings& settings, const FrameSource& source) {
-  if (settings.frames == 0) return source.frames();
-  return source.knows_frames() ? std::min(settings.frames, source.frames()) : settings.frames;
+// What a sequence says of itself can be compared before the work.
+void CheckSequence(const DetectSettings& settings, const Truth& truth) {
+  if (!std::filesystem::exists(settings.source / "seqinfo.ini")) return;
+  const SequenceInfo info = ReadSequenceInfo(settings.source);
+  CheckSize(settings, truth, info.width, info.height);
+  CheckLength(settings, truth,
+              settings.frames > 0 ? std::min(settings.frames, info.frames) : info.frames);
 }
 
 std::vector<FrameOutcome> RunDetection(const DetectSettings& settings,
-                                       const OfflineOptions& options, FrameSource& source,
-                                       const std::optional<Truth>& truth) {
-  const std::shared_ptr<Backend> backend =
-      Backend::Create(options.device.device, [](const std::string& line) {
-        std::fprintf(stderr, "windhover-replay: %s\n", line.c_str());
-      });
-  std::fprintf(stderr, "device: %s\n", backend->device().Describe().c_str());
-  std::unique_ptr<OfflineDetection> detection;
-  const int to_come = FramesToCome(settings, source);
-  Progress progress("detecting", to_come);
+                                       const DetectionSettings& detection) {
+  Progress progress("detecting");
   const auto start = std::chrono::steady_clock::now();
-  int frames = 0;
-  for (cv::Mat frame = source.Next(); !frame.empty(); frame = source.Next()) {
-    ThrowIfInterrupted();
-    if (!detection) {
-      if (truth) CheckSize(settings, *truth, frame);
-      detection = std::make_unique<OfflineDetection>(backend, frame.cols, frame.rows, options);
-    }
-    detection->Push(frame);
-    progress.Advance();
-    if (++frames == settings.frames) break;
-  }
-  if (!detection) throw FormatError(settings.source, "holds no frame");
-  detection->Drain();
+  const DetectionWatch watch = {[&](const DetectionState& state) {
+                                  ThrowIfInterrupted();
+                                  progress.AdvanceTo(state.frames, state.to_come);
+                                },
+                                [](const std::string& line) {
+                                  std::fprintf(stderr, "windhover-replay: %s\n", line.c_str());
+                                }};
+  std::vector<FrameOutcome> outcomes = DetectInSource(settings.source, detection, watch);
   progress.Finish();
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::fprintf(stderr, "%d frames in %.1f s\n", frames, seconds);
-  if (frames < to_come) {
-    std::fprintf(stderr, "windhover-replay: %s: %d frames were to come, %d could be read\n",
-                 settings.source.c_str(), to_come, frames);
-  }
-  return detection->outcomes();
-}
-
-std::vector<LabelledBox> Boxes(const std::vector<FrameOutcome>& outcomes) {
-  std::vector<LabelledBox> boxes;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    for (const Detection& detection : outcomes[i].detections) {
-      boxes.push_back({static_cast<int>(i) + 1, static_cast<std::int64_t>(detection.track_id),
-                       detection.box, detection.score});
-    }
-  }
-  return boxes;
+  std::fprintf(stderr, "%zu frames in %.1f s\n", outcomes.size(), seconds);
+  return outcomes;
 }
 
 void PrintScores(const Truth& truth, const std::vector<FrameOutcome>& outcomes) {
@@ -144,7 +118,7 @@ void PrintScores(const Truth& truth, const std::vector<FrameOutcome>& outcomes) 
                               sequence.frame_rate_hz(),
                               truth.first_from_frame};
   const MotionReport report =
-      ReportMotion(motion, Boxes(outcomes), DefaultOverlaps(MotionProtocol::kWindhover));
+      ReportMotion(motion, BoxesOf(outcomes), DefaultOverlaps(MotionProtocol::kWindhover));
   std::fputs(Describe(report).c_str(), stdout);
   if (truth.first_from_frame.empty()) return;
   const RegistrationScore registration =
@@ -155,13 +129,14 @@ void PrintScores(const Truth& truth, const std::vector<FrameOutcome>& outcomes) 
 
 void WriteOverlays(const DetectSettings& settings, const std::vector<FrameOutcome>& outcomes,
                    const std::optional<Truth>& truth) {
-  BoxesByFrame detections = ByFrame(Boxes(outcomes));
+  BoxesByFrame detections = ByFrame(BoxesOf(outcomes));
   BoxesByFrame movers;
   if (truth) movers = ByFrame(truth->movers);
   const std::unique_ptr<FrameSource> source = OpenFrames(settings.source);
   for (int number = 1; number <= static_cast<int>(outcomes.size()); ++number) {
     ThrowIfInterrupted();
     cv::Mat frame = source->Next();
+    if (frame.empty()) throw FormatError(settings.source, "ends early when read again");
     if ((number - 1) % settings.every != 0) continue;
     DrawBoxes(frame, detections[number], truth ? &movers[number] : nullptr,
               "frame " + std::to_string(number));
@@ -173,24 +148,33 @@ void WriteOverlays(const DetectSettings& settings, const std::vector<FrameOutcom
 }
 
 void Detect(const DetectSettings& settings) {
-  OfflineOptions options;
-  for (const std::string& assignment : settings.assignments) SetOption(options, assignment);
-  const std::unique_ptr<FrameSource> source = OpenFrames(settings.source);
-  const std::optional<Truth> truth = ReadTruth(settings);
-  if (truth && source->knows_frames()) {
-    CheckLength(settings, *truth, FramesToCome(settings, *source));
+  DetectionSettings detection;
+  for (const std::string& assignment : settings.assignments) {
+    detection.options.push_back(ParsePipelineOption(assignment));
   }
+  detection.frames = settings.frames;
+  if (!std::filesystem::exists(settings.source)) {
+    throw FormatError(settings.source, "does not exist");
+  }
+  const std::optional<Truth> truth = ReadTruth(settings);
+  if (truth) CheckSequence(settings, *truth);
   std::filesystem::create_directories(settings.out);
   if (!settings.overlay.empty()) std::filesystem::create_directories(settings.overlay);
+  std::optional<PendingFile> video;
+  if (settings.video) detection.video = video.emplace(settings.out / "annotated.mp4").temporary();
   CatchInterrupts();
-  const std::vector<FrameOutcome> outcomes = RunDetection(settings, options, *source, truth);
-  if (truth) CheckLength(settings, *truth, static_cast<int>(outcomes.size()));
+  const std::vector<FrameOutcome> outcomes = RunDetection(settings, detection);
+  if (truth) {
+    CheckSize(settings, *truth, outcomes.front().width, outcomes.front().height);
+    CheckLength(settings, *truth, static_cast<int>(outcomes.size()));
+  }
   const auto lost = std::count_if(outcomes.begin(), outcomes.end(), [](const FrameOutcome& one) {
     return one.registration.quality == RegistrationQuality::kLost;
   });
-  const std::vector<LabelledBox> boxes = Boxes(outcomes);
+  const std::vector<LabelledBox> boxes = BoxesOf(outcomes);
   WriteDetections(settings.out / "det.txt", boxes);
   WriteHomographies(settings.out / "homography.txt", FirstFromFrame(outcomes));
+  if (video) video->Complete();
   std::printf("%zu frames, %zu boxes, %lld lost\n", outcomes.size(), boxes.size(),
               static_cast<long long>(lost));
   if (truth) PrintScores(*truth, outcomes);
@@ -198,7 +182,7 @@ void Detect(const DetectSettings& settings) {
   try {
     WriteOverlays(settings, outcomes, truth);
   } catch (const Interrupted&) {
-    throw Interrupted("det.txt and homography.txt are complete, the pictures are not");
+    throw Interrupted("the results are complete, the pictures are not");
   }
 }
 
@@ -207,12 +191,19 @@ void Detect(const DetectSettings& settings) {
 void AddDetectCommand(CLI::App& app) {
   auto settings = std::make_shared<DetectSettings>();
   CLI::App* command = app.add_subcommand(
-      "detect", "Run registration and motion detection on a sequence or video, deterministically");
-  command->add_option("source", settings->source, "Sequence folder or video file")->required();
+      "detect",
+      "Run the elements on a sequence or video as fast as they can: the same result every time");
+  command
+      ->add_option("source", settings->source,
+                   "Sequence folder, video file or folder with one video")
+      ->required();
   command->add_option("--out", settings->out, "Folder for det.txt and homography.txt")->required();
-  command->add_option("--set", settings->assignments, "option=value; may be repeated");
+  command->add_option("--set", settings->assignments,
+                      "option=value of the elements; may be repeated");
   command->add_option("--frames", settings->frames, "Only so many frames from the start")
       ->check(CLI::Range(1, 100000000));
+  command->add_flag("--video", settings->video,
+                    "Write annotated.mp4, too, as 'windhover run' draws it");
   command->add_option("--truth", settings->truth,
                       "Sequence whose truth is compared with the result, frame by frame; never "
                       "read otherwise");

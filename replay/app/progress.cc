@@ -17,9 +17,19 @@ Progress::Progress(std::string label, int total)
 
 void Progress::Advance() {
   const std::scoped_lock lock(mutex_);
-  ++done_;
+  ShowAdvance(done_ + 1);
+}
+
+void Progress::AdvanceTo(int done, int total) {
+  const std::scoped_lock lock(mutex_);
+  total_ = total;
+  if (done > done_) ShowAdvance(done);
+}
+
+void Progress::ShowAdvance(int done) {
   const auto now = std::chrono::steady_clock::now();
-  const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : Passed();
+  const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : Passes(done);
+  done_ = done;
   if (!due && done_ != total_) return;
   shown_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
@@ -28,9 +38,10 @@ void Progress::Advance() {
                total.c_str(), seconds > 0 ? done_ / seconds : 0.0, terminal_ ? "\x1b[K" : "\n");
 }
 
-bool Progress::Passed() const {
-  if (total_ == 0) return done_ % 100 == 0;
-  return std::int64_t{10} * done_ / total_ != std::int64_t{10} * (done_ - 1) / total_;
+bool Progress::Passes(int done) const {
+  const std::int64_t parts = total_ > 0 ? 10 : 1;
+  const std::int64_t whole = total_ > 0 ? total_ : 100;
+  return parts * done / whole != parts * done_ / whole;
 }
 
 void Progress::Finish() {

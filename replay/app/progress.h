@@ -12,14 +12,18 @@ namespace windhover::replay {
 class Progress {
  public:
   // `total` 0: not known.
-  Progress(std::string label, int total);
+  explicit Progress(std::string label, int total = 0);
+  // By one.
   void Advance();
+  // To `done` of what may be known to be so many by now.
+  void AdvanceTo(int done, int total);
   // Ends the line on a terminal.
   void Finish();
 
  private:
-  // Whether one more has completed a step that is worth a line.
-  bool Passed() const;
+  void ShowAdvance(int done);
+  // Whether a step that is worth a line has been completed on the way to `done`.
+  bool Passes(int done) const;
 
   std::string label_;
   int total_;

@@ -2,13 +2,13 @@
 #include "replay/benchmarks/motion_benchmark.h"
 
 #include <algorithm>
-#include <deque>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "gpu-kernels/backend.h"
 #include "replay/baselines/frame_differencing.h"
 #include "replay/baselines/stabilized_mog2.h"
 #include "replay/benchmarks/dataset.h"
@@ -17,7 +17,7 @@
 #include "replay/format/format_error.h"
 #include "replay/format/frame_source.h"
 #include "replay/format/truth.h"
-#include "replay/offline/offline_detection.h"
+#include "replay/offline/detection.h"
 #include "replay/readers/recording.h"
 
 namespace windhover::replay {
@@ -29,16 +29,6 @@ constexpr int kCurveThresholds[] = {40, 20, 10};  // grey levels
 constexpr int kCurveAreas[] = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 96, 128};
 
 constexpr const char* kRealSets[] = {"uavdt-s1301", "uav123-person12", "uav123-building4-static"};
-
-std::vector<LabelledBox> BoxesOf(const std::vector<FrameOutcome>& outcomes) {
-  std::vector<LabelledBox> boxes;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    for (const Detection& detection : outcomes[i].detections) {
-      boxes.push_back({static_cast<int>(i) + 1, -1, detection.box, detection.score});
-    }
-  }
-  return boxes;
-}
 
 OverlapScores ScoresOf(const std::vector<LabelledBox>& truth,
                        const std::vector<LabelledBox>& found) {
@@ -72,20 +62,24 @@ class MotionBenchmark {
 
  private:
   std::vector<PeerRun> MakePeers(const std::string& id) const;
+  std::vector<FrameOutcome> Detect(const std::filesystem::path& source, const std::string& what,
+                                   const std::string& reference);
   void MeasureSequence(const DatasetSequence& sequence);
   void AddCurve(const std::vector<LabelledBox>& truth, const std::vector<PeerRun>& peers);
   void MeasureRealSet(const std::string& name);
 
   MotionBenchmarkSettings settings_;
   BenchmarkProgress progress_;
-  std::shared_ptr<Backend> backend_;
+  std::string device_;
   MotionResults results_;
   std::vector<std::string> left_out_;
 };
 
 MotionBenchmark::MotionBenchmark(const MotionBenchmarkSettings& settings,
                                  const BenchmarkProgress& progress)
-    : settings_(settings), progress_(progress), backend_(Backend::Create(settings.device)) {
+    : settings_(settings),
+      progress_(progress),
+      device_(Backend::Create(settings.device)->device().Describe()) {
   results_.contestants = {{"motion.", "windhover", {}},
                           {"motion.centre.", "centre", {}},
                           {"motion.frame_differencing.", "FD", {}},
@@ -123,47 +117,39 @@ void MotionBenchmark::AddCurve(const std::vector<LabelledBox>& truth,
   }
 }
 
+std::vector<FrameOutcome> MotionBenchmark::Detect(const std::filesystem::path& source,
+                                                  const std::string& what,
+                                                  const std::string& reference) {
+  DetectionSettings detection;
+  detection.options = {{"device", settings_.device}, {"reference", reference}};
+  detection.frames = settings_.frames;
+  progress_.say("motion " + what + ", " + reference);
+  return DetectInSource(
+      source, detection,
+      {[&](const DetectionState&) { progress_.check(); }, [](const std::string&) {}});
+}
+
 void MotionBenchmark::MeasureSequence(const DatasetSequence& sequence) {
-  const int has = ReadSequenceInfo(sequence.folder).frames;
-  const int frames = settings_.frames > 0 ? std::min(settings_.frames, has) : has;
-  const SequenceTruth truth(sequence.folder, frames);
+  const std::vector<FrameOutcome> anchor = Detect(sequence.folder, sequence.id, "anchor");
+  const std::vector<FrameOutcome> centre = Detect(sequence.folder, sequence.id, "centre");
+  const SequenceTruth truth(sequence.folder, static_cast<int>(anchor.size()));
   const std::vector<LabelledBox> movers = truth.Movers();
-  OfflineOptions centre_options;
-  centre_options.registration.reference = ReferenceMode::kCentre;
-  OfflineDetection anchor(backend_, truth.width(), truth.height(), {});
-  OfflineDetection centre(backend_, truth.width(), truth.height(), centre_options);
+  progress_.say("motion " + sequence.id + ", peers");
   std::vector<PeerRun> peers = MakePeers(sequence.id);
   const std::unique_ptr<FrameSource> source = OpenFrames(sequence.folder);
-  std::deque<cv::Mat> waiting;  // gray frames whose registration has not come out
-  std::size_t out = 0;
-  const auto run_peers = [&] {
-    for (; out < anchor.outcomes().size(); ++out) {
-      for (PeerRun& run : peers) {
-        run.Take(static_cast<int>(out) + 1, waiting.front(), anchor.outcomes()[out].registration);
-      }
-      waiting.pop_front();
+  cv::Mat gray;
+  for (std::size_t i = 0; i < anchor.size(); ++i) {
+    cv::cvtColor(source->Next(), gray, cv::COLOR_BGR2GRAY);
+    for (PeerRun& run : peers) {
+      progress_.check();
+      run.Take(static_cast<int>(i) + 1, gray, anchor[i].registration);
     }
-  };
-  for (int frame = 0; frame < frames; ++frame) {
-    progress_.check();
-    if (frame % 50 == 0) {
-      progress_.say("motion " + sequence.id + ": frame " + std::to_string(frame) + " of " +
-                    std::to_string(frames));
-    }
-    const cv::Mat picture = source->Next();
-    cv::cvtColor(picture, waiting.emplace_back(), cv::COLOR_BGR2GRAY);
-    anchor.Push(picture);
-    centre.Push(picture);
-    run_peers();
   }
-  anchor.Drain();
-  centre.Drain();
-  run_peers();
   const auto keep = [&](std::size_t contestant, const std::vector<LabelledBox>& boxes) {
     results_.contestants[contestant].scores[sequence.id] = ScoresOf(movers, boxes);
   };
-  keep(MotionResults::kAnchor, BoxesOf(anchor.outcomes()));
-  keep(MotionResults::kCentre, BoxesOf(centre.outcomes()));
+  keep(MotionResults::kAnchor, BoxesOf(anchor));
+  keep(MotionResults::kCentre, BoxesOf(centre));
   for (std::size_t i = MotionResults::kFrameDifferencing; i < results_.contestants.size(); ++i) {
     keep(i, peers[i - MotionResults::kFrameDifferencing].boxes);
   }
@@ -171,27 +157,19 @@ void MotionBenchmark::MeasureSequence(const DatasetSequence& sequence) {
 }
 
 void MotionBenchmark::MeasureRealSet(const std::string& name) {
-  if (!std::filesystem::exists(settings_.data / name)) {
+  const std::filesystem::path path = settings_.data / name;
+  if (!std::filesystem::exists(path)) {
     left_out_.push_back("there is no " + name + " among the real sets");
     return;
   }
-  const Recording recording = OpenRecording(settings_.data / name);
-  const std::unique_ptr<FrameSource> source = recording.open_frames();
-  std::unique_ptr<OfflineDetection> detection;
-  int frames = 0;
-  for (cv::Mat frame = source->Next(); !frame.empty(); frame = source->Next()) {
-    progress_.check();
-    if (frames % 50 == 0) progress_.say("motion on " + name + ": frame " + std::to_string(frames));
-    if (!detection) {
-      detection =
-          std::make_unique<OfflineDetection>(backend_, frame.cols, frame.rows, OfflineOptions());
-    }
-    detection->Push(frame);
-    if (++frames == settings_.frames) break;
+  const Recording recording = OpenRecording(path);
+  const std::vector<FrameOutcome> outcomes = Detect(path, name, "anchor");
+  const std::vector<LabelledBox> boxes = BoxesOf(outcomes);
+  const int frames = static_cast<int>(outcomes.size());
+  if (settings_.frames == 0 && recording.knows_frames && frames != recording.frames) {
+    throw FormatError(path, "gives " + std::to_string(frames) + " frames, but its labels are of " +
+                                std::to_string(recording.frames));
   }
-  if (!detection) throw FormatError(recording.path, "holds no frame");
-  detection->Drain();
-  const std::vector<LabelledBox> boxes = BoxesOf(detection->outcomes());
   RealSetResult result = {name, frames, static_cast<int>(boxes.size()), {}};
   std::vector<LabelledBox> truth = recording.Truth();
   std::erase_if(truth, [&](const LabelledBox& box) { return box.frame > frames; });
@@ -215,7 +193,7 @@ BenchmarkDocument MotionBenchmark::Run() {
   for (const char* name : kRealSets) MeasureRealSet(name);
   for (const std::string& line : AbsentSequences(sequences)) left_out_.push_back(line);
   progress_.say("taking the dataset's checksum");
-  return {.device = backend_->device().Describe(),
+  return {.device = device_,
           .dataset_sha256 = DatasetSha256(sequences, progress_),
           .options = OptionList(settings_.frames),
           .figures = MotionFigures(results_),

@@ -11,8 +11,8 @@
 
 #include "gpu-kernels/backend.h"
 #include "replay/baselines/klt_registration.h"
-#include "replay/benchmarks/pipeline_run.h"
 #include "replay/benchmarks/timing.h"
+#include "replay/offline/pipeline_run.h"
 #include "replay/offline/product_registration.h"
 #include "replay/render/parallel.h"
 #include "replay/render/renderer.h"

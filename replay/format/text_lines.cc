@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "replay/format/format_error.h"
+#include "replay/format/pending_file.h"
 
 namespace windhover::replay {
 namespace {
@@ -82,17 +83,12 @@ std::vector<double> ParseColumns(const std::filesystem::path& file, std::size_t 
 
 void WriteText(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  const std::filesystem::path pending = file.string() + ".pending";
-  std::ofstream out(pending, std::ios::binary);
+  PendingFile pending(file);
+  std::ofstream out(pending.temporary(), std::ios::binary);
   out << text;
   out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(pending, file, error);
-  if (!out || error) {
-    std::error_code ignored;
-    std::filesystem::remove(pending, ignored);
-    throw FormatError(file, "cannot be written");
-  }
+  if (!out) throw FormatError(file, "cannot be written");
+  pending.Complete();
 }
 
 std::string NumberText(double value, int digits) {

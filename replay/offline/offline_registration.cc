@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/offline/offline_registration.h"
 
-#include <opencv2/core.hpp>
+#include <memory>
+#include <opencv2/imgproc.hpp>
 
-#include "replay/offline/luma.h"
-#include "service/vision/registration.h"
+#include "replay/offline/product_registration.h"
 
 namespace windhover::replay {
 
@@ -13,18 +13,18 @@ std::vector<FrameRegistration> RegisterFrames(FrameSource& source,
                                               const RegistrationOptions& options, int most_frames,
                                               const std::function<void()>& on_frame) {
   std::vector<FrameRegistration> outcomes;
-  std::unique_ptr<StreamRegistration> registration;
-  GrayImage gray;
-  cv::Mat luma;
+  std::unique_ptr<ProductRegistration> registration;
+  cv::Mat gray;
   while (most_frames == 0 || static_cast<int>(outcomes.size()) < most_frames) {
     const cv::Mat frame = source.Next();
     if (frame.empty()) break;
     if (!registration) {
-      gray = backend->MakeImage<std::uint8_t>(frame.cols, frame.rows);
-      registration = std::make_unique<StreamRegistration>(backend, frame.cols, frame.rows, options);
+      registration =
+          std::make_unique<ProductRegistration>(backend, frame.cols, frame.rows, options);
     }
-    CopyLuma(frame, luma, gray);
-    outcomes.push_back(registration->Register(gray));
+    cv::cvtColor(frame, gray, cv::COLOR_BGR2GRAY);
+    registration->Register(gray);
+    outcomes.push_back(registration->last());
     on_frame();
   }
   return outcomes;

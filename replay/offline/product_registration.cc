@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/offline/product_registration.h"
 
-#include "replay/offline/luma.h"
+#include <cstring>
 
 namespace windhover::replay {
 
@@ -11,7 +11,12 @@ ProductRegistration::ProductRegistration(const std::shared_ptr<Backend>& backend
       registration_(backend, width, height, options) {}
 
 std::optional<Eigen::Matrix3d> ProductRegistration::Register(const cv::Mat& gray) {
-  CopyGray(gray, image_);
+  {
+    const MappedImage<std::uint8_t> pixels = image_.Write();
+    for (int y = 0; y < gray.rows; ++y) {
+      std::memcpy(pixels.row(y), gray.ptr(y), static_cast<std::size_t>(gray.cols));
+    }
+  }
   last_ = registration_.Register(image_);
   if (last_.starts_segment || last_.quality == RegistrationQuality::kLost) return std::nullopt;
   return last_.previous_from_frame;

@@ -18,12 +18,13 @@
 
 #include "service/app/exit_code.h"
 #include "service/app/pending_file.h"
-#include "service/app/pipeline.h"
 #include "service/app/progress.h"
 #include "service/app/random_name.h"
 #include "service/app/run_outcome.h"
 #include "service/app/subscriber_process.h"
 #include "service/dds/log.h"
+#include "service/gstreamer/messages.h"
+#include "service/gstreamer/pipeline.h"
 #include "service/gstreamer/start.h"
 
 namespace windhover {
@@ -51,19 +52,6 @@ class GlibLoop {
  private:
   GMainLoop* loop_;
 };
-
-// What an error or a warning says.
-std::string Text(GstMessage* message, void (*parse)(GstMessage*, GError**, char**)) {
-  GError* error = nullptr;
-  parse(message, &error, nullptr);
-  std::string text = error->message;
-  if (g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_TYPE_NOT_FOUND) ||
-      g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_WRONG_TYPE)) {
-    text = "not a video: " + text;
-  }
-  g_error_free(error);
-  return text;
-}
 
 // One run. All but the pipeline's streaming threads happens on the main loop of one thread.
 class Job {
@@ -137,7 +125,10 @@ Job::Job(const RunOptions& options, const Source& source)
   lines_.open(lines_path_.temporary(), std::ios::binary);
   if (!lines_) throw std::runtime_error(options.out + ": cannot be written to");
   if (options.video) video_path_.emplace(fs::path(options.out) / "annotated.mp4");
-  pipeline_.emplace(source, video_path_ ? video_path_->temporary().string() : "");
+  pipeline_.emplace(source,
+                    std::vector<std::string>{"whregister", "queue", "whbackground", "queue",
+                                             "whmotion", "whpublish", "whoverlay"},
+                    video_path_ ? video_path_->temporary().string() : "");
   Configure(options);
 }
 
@@ -155,7 +146,7 @@ void Job::Configure(const RunOptions& options) {
   all.insert(all.end(), settings_.begin(), settings_.end());
   settings_ = std::move(all);
   settings_.push_back({"partition", Setting("partition", "") + "," + partition_});
-  for (const OptionSetting& setting : settings_) pipeline_->Set(setting);
+  for (const OptionSetting& setting : settings_) pipeline_->Set(setting.name, setting.value);
 }
 
 std::string Job::Setting(const std::string& name, const std::string& otherwise) const {
@@ -203,13 +194,13 @@ void Job::OnMessage(GstMessage* message) {
   switch (GST_MESSAGE_TYPE(message)) {
     case GST_MESSAGE_ERROR: {
       const std::uint64_t frames = pipeline_->frames_in();
-      Fail(fmt::format("{}: {}{}", source_.name, Text(message, gst_message_parse_error),
+      Fail(fmt::format("{}: {}{}", source_.name, TextOf(message),
                        frames > 0 ? fmt::format(" (after {} frames)", frames) : ""));
       break;
     }
     case GST_MESSAGE_WARNING:
       progress_.Clear();
-      Log()->warn("{}", Text(message, gst_message_parse_warning));
+      Log()->warn("{}", TextOf(message));
       break;
     case GST_MESSAGE_EOS:
       EndOfVideo();
@@ -217,17 +208,9 @@ void Job::OnMessage(GstMessage* message) {
     case GST_MESSAGE_ELEMENT:
       if (gst_message_has_name(message, "windhover-subscribers")) PlayOnceMatched();
       break;
-    case GST_MESSAGE_HAVE_CONTEXT: {
-      GstContext* context = nullptr;
-      gst_message_parse_have_context(message, &context);
-      const char* description =
-          gst_structure_get_string(gst_context_get_structure(context), "description");
-      if (gst_context_has_context_type(context, "windhover.backend") && description != nullptr) {
-        device_ = description;
-      }
-      gst_context_unref(context);
+    case GST_MESSAGE_HAVE_CONTEXT:
+      device_ = DeviceOf(message).value_or(device_);
       break;
-    }
     default:
       break;
   }
@@ -301,8 +284,9 @@ void Job::OnTick() {
   if (stage_ == Stage::kFlowing) {
     if (interrupted_ && now - interrupted_at_ > kStandstill) pipeline_->EndEarly();
     std::string share;
-    if (const auto length = pipeline_->length_ns(); length > 0) {
-      share = fmt::format(", {:.0f} %", std::min(100.0, 100.0 * pipeline_->reached_ns() / length));
+    if (const SourceReach reach = pipeline_->reach(); reach.length_ns > 0) {
+      share =
+          fmt::format(", {:.0f} %", std::min(100.0, 100.0 * reach.reached_ns / reach.length_ns));
     }
     progress_.Show(fmt::format("{}: {} frames{}, {:.1f} frames/s", source_.name,
                                pipeline_->frames_out(), share, FramesPerSecond(now)),
@@ -326,16 +310,13 @@ double Job::FramesPerSecond(Clock::time_point until) const {
 RunOutcome Job::Outcome() const {
   RunOutcome outcome;
   outcome.source = source_.name;
-  outcome.frames_in = pipeline_->frames_in();
+  outcome.source_reach = pipeline_->reach();
   outcome.frames_out = pipeline_->frames_out();
   outcome.published = published_;
   outcome.received = received_;
   outcome.failed_samples = failed_;
   outcome.frames_per_second = FramesPerSecond(end_of_video_);
   outcome.device = device_;
-  outcome.reached_ns = pipeline_->reached_ns();
-  outcome.length_ns = pipeline_->length_ns();
-  outcome.missing_bytes = source_.missing_bytes;
   return outcome;
 }
 
@@ -361,10 +342,10 @@ int Job::Finish() {
   if (!loss.empty()) throw std::runtime_error("Samples were lost: " + loss);
   if (interrupted_) {
     fmt::print(stderr, "windhover: {}: interrupted after {} frames\n", source_.name,
-               outcome.frames_in);
+               outcome.source_reach.frames);
     return kExitInterrupted;
   }
-  const std::string cut_off = CutOff(outcome);
+  const std::string cut_off = CutOff(outcome.source_reach);
   if (!cut_off.empty()) throw std::runtime_error(source_.name + " " + cut_off);
   return kExitOk;
 }

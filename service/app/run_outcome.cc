@@ -6,19 +6,14 @@
 #include <tuple>
 
 namespace windhover {
-namespace {
-
-constexpr std::int64_t kCutOffNs = 500'000'000;
-
-}  // namespace
 
 std::string Loss(const RunOutcome& outcome) {
   const std::uint64_t frames = outcome.frames_out;
   if (outcome.failed_samples > 0) {
     return fmt::format("{} samples could not be written to the bus", outcome.failed_samples);
   }
-  if (outcome.frames_in != frames) {
-    return fmt::format("{} frames went in, {} came out", outcome.frames_in, frames);
+  if (outcome.source_reach.frames != frames) {
+    return fmt::format("{} frames went in, {} came out", outcome.source_reach.frames, frames);
   }
   const auto& [published, received] = std::tie(outcome.published, outcome.received);
   for (const auto& [name, sent, arrived] :
@@ -35,23 +30,14 @@ std::string Loss(const RunOutcome& outcome) {
   return "";
 }
 
-std::string CutOff(const RunOutcome& outcome) {
-  if (outcome.missing_bytes > 0) {
-    return fmt::format("is cut off: {} bytes are missing; it ends after {:.2f} s, {} frames",
-                       outcome.missing_bytes, 1e-9 * outcome.reached_ns, outcome.frames_in);
-  }
-  if (outcome.length_ns - outcome.reached_ns < kCutOffNs) return "";
-  return fmt::format("is cut off: it ends after {:.2f} s of {:.2f} s, {} frames",
-                     1e-9 * outcome.reached_ns, 1e-9 * outcome.length_ns, outcome.frames_in);
-}
-
 std::string Summary(const RunOutcome& outcome) {
   return fmt::format(
       "{}: {} frames in, {} out; homographies {} published, {} received; detections {} published, "
       "{} received; {} boxes; {:.1f} frames/s; {}",
-      outcome.source, outcome.frames_in, outcome.frames_out, outcome.published.homographies,
-      outcome.received.homographies, outcome.published.detections, outcome.received.detections,
-      outcome.received.boxes, outcome.frames_per_second, outcome.device);
+      outcome.source, outcome.source_reach.frames, outcome.frames_out,
+      outcome.published.homographies, outcome.received.homographies, outcome.published.detections,
+      outcome.received.detections, outcome.received.boxes, outcome.frames_per_second,
+      outcome.device);
 }
 
 }  // namespace windhover

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "gst-plugins/evidence_meta.h"
-#include "gst-plugins/homography_meta.h"
+#include "service/gstreamer/homography_meta.h"
 #include "tests/gst-plugins/harness.h"
 #include "tests/gst-plugins/test_video.h"
 

@@ -5,8 +5,8 @@
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 
-#include "gst-plugins/detection_meta.h"
 #include "gst-plugins/evidence_meta.h"
+#include "service/gstreamer/detection_meta.h"
 #include "tests/gst-plugins/harness.h"
 #include "tests/gst-plugins/test_video.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gst-plugins/homography_meta.h"
+#include "service/gstreamer/homography_meta.h"
 
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "gst-plugins/element.h"
 #include "gst-plugins/evidence_meta.h"
-#include "gst-plugins/registration_transform.h"
+#include "service/gstreamer/registration_transform.h"
 #include "service/vision/homography.h"
 #include "tests/gst-plugins/harness.h"
 #include "tests/support/synthetic_ground.h"

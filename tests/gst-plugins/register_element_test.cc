@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "gst-plugins/homography_meta.h"
+#include "service/gstreamer/homography_meta.h"
 #include "service/vision/homography.h"
 #include "tests/gst-plugins/harness.h"
 #include "tests/gst-plugins/test_video.h"

@@ -8,14 +8,13 @@
 #include <thread>
 #include <vector>
 
-#include "gst-plugins/detection_meta.h"
-#include "gst-plugins/homography_meta.h"
-#include "replay/benchmarks/pipeline_run.h"
-#include "replay/offline/offline_detection.h"
+#include "replay/offline/pipeline_run.h"
 #include "replay/render/parallel.h"
 #include "replay/render/renderer.h"
 #include "replay/scoring/motion_score.h"
 #include "replay/scoring/registration_score.h"
+#include "service/gstreamer/detection_meta.h"
+#include "service/gstreamer/homography_meta.h"
 
 // The whole way on the embedded flight: rendered frames into the real elements, what comes out of
 // them against the truth.
@@ -137,27 +136,6 @@ TEST(EndToEnd, CentreModeFindsTheMoversOfTheFlight) {
   ExpectEveryFrameOnceInOrder(outcome, kFrames);
   ExpectExactRegistration(outcome);
   ExpectMoversFound(outcome);
-}
-
-TEST(EndToEnd, TheElementsAgreeWithTheLibrary) {
-  constexpr std::size_t kFrames = 60;
-  const Flight& flight = TheFlight();
-  const Outcome outcome = RunElements("anchor", kFrames);
-  OfflineDetection offline(Backend::Create(), flight.plan.width, flight.plan.height, {});
-  for (std::size_t i = 0; i < kFrames; ++i) offline.Push(flight.bgr[i]);
-  offline.Drain();
-  ASSERT_EQ(offline.outcomes().size(), kFrames);
-  // Both make luma of the whole range from the same BGR pictures, with weights that are rounded
-  // differently: a grey level here and there, same answer. A video in I420 is not covered by this:
-  // of it the elements take the Y plane as it is, and the library what OpenCV makes of it.
-  for (std::size_t i = 1; i < kFrames; ++i) {
-    EXPECT_LE(RegistrationRms(outcome.registrations[i].previous_from_frame,
-                              offline.outcomes()[i].registration.previous_from_frame,
-                              flight.plan.width, flight.plan.height)
-                  .value(),
-              0.02)
-        << "frame " << i;
-  }
 }
 
 }  // namespace

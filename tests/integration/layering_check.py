@@ -20,12 +20,13 @@ MAY_INCLUDE = {
     "service/options/": (),
     "service/vision/": ("service/options/", "gpu-kernels/"),
     "service/dds/": ("service/options/", "service/vision/types.h", "idl/"),
-    "service/gstreamer/": (),
+    "service/gstreamer/": ("service/vision/",),
     "service/app/": ("service/", "gpu-kernels/"),
     "gst-plugins/": (
         "service/options/",
         "service/vision/",
         "service/dds/",
+        "service/gstreamer/",
         "gpu-kernels/backend.h",
         "gpu-kernels/image.h",
         "gpu-kernels/multiversion.h",  # a macro; nothing to link with
@@ -41,14 +42,29 @@ MAY_INCLUDE = {
 BELONGS_TO = {
     "CL/": ("gpu-kernels/opencl/",),
     "fftw3.h": ("gpu-kernels/", "tests/gpu-kernels/"),
-    "gst/": ("service/gstreamer/", "service/app/", "gst-plugins/", "replay/benchmarks/", "tests/"),
+    "gst/": ("service/gstreamer/", "service/app/", "gst-plugins/", "replay/offline/", "tests/"),
     "dds/": ("service/dds/", "tests/"),
     "idl/": ("service/dds/", "tests/"),
     "CLI/": ("service/app/", "replay/", "tests/"),
     "nlohmann/": ("service/", "replay/", "tests/"),
-    "spdlog/": ("service/dds/", "service/app/", "gst-plugins/", "replay/", "tests/"),
+    "spdlog/": (
+        "service/dds/",
+        "service/gstreamer/",
+        "service/app/",
+        "gst-plugins/",
+        "replay/",
+        "tests/",
+    ),
     "opencv2/": ("service/vision/", "gst-plugins/", "replay/", "tests/"),
-    "Eigen/": ("service/vision/", "service/dds/", "service/app/", "gst-plugins/", "replay/", "tests/"),
+    "Eigen/": (
+        "service/vision/",
+        "service/dds/",
+        "service/gstreamer/",
+        "service/app/",
+        "gst-plugins/",
+        "replay/",
+        "tests/",
+    ),
 }
 
 # Nothing of the operators' may need these, tests included.

@@ -32,12 +32,12 @@ FORBIDDEN = [
     ("service/dds/publisher.cc", '#include "gpu-kernels/backend.h"'),
     ("service/gstreamer/start.cc", '#include "service/app/run.h"'),
     ("service/gstreamer/start.cc", "#include <dds/dds.h>"),
-    ("service/app/run.cc", '#include "gst-plugins/homography_meta.h"'),
+    ("service/app/run.cc", '#include "gst-plugins/luma.h"'),
     ("service/app/run.cc", '#include "replay/format/sequence.h"'),
     ("gst-plugins/whregister.cc", '#include "service/app/run.h"'),
     ("gst-plugins/whregister.cc", '#include "gpu-kernels/warp/warp.h"'),
     ("gst-plugins/whregister.cc", '#include "replay/format/sequence.h"'),
-    ("replay/render/render.cc", '#include "gst-plugins/homography_meta.h"'),
+    ("replay/render/render.cc", '#include "gst-plugins/luma.h"'),
     ("replay/render/render.cc", '#include "service/dds/publisher.h"'),
     ("deploy/examples/watch.cc", '#include "service/dds/subscriber.h"'),
 ]
@@ -56,8 +56,10 @@ ALLOWED = [
     ("service/gstreamer/start.cc", "#include <gst/gst.h>"),
     ("service/app/run.cc", '#include "service/gstreamer/start.h"'),
     ("replay/render/render.cc", '#include "gpu-kernels/backend.h"'),
-    ("replay/benchmarks/pipeline.cc", '#include "service/gstreamer/start.h"'),
-    ("tests/gst-plugins/whregister_test.cc", '#include "gst-plugins/homography_meta.h"'),
+    ("service/gstreamer/homography_meta.h", '#include "service/vision/types.h"'),
+    ("gst-plugins/whregister.cc", '#include "service/gstreamer/homography_meta.h"'),
+    ("replay/offline/detection.cc", '#include "service/gstreamer/start.h"'),
+    ("tests/gst-plugins/whregister_test.cc", '#include "gst-plugins/luma.h"'),
 ]
 
 

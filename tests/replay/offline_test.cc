@@ -9,10 +9,11 @@
 
 #include "replay/baselines/klt_registration.h"
 #include "replay/benchmarks/timing.h"
-#include "replay/offline/offline_detection.h"
+#include "replay/offline/detection.h"
 #include "replay/offline/overlay.h"
 #include "replay/render/renderer.h"
 #include "replay/scoring/registration_score.h"
+#include "service/options/option.h"
 
 namespace windhover::replay {
 namespace {
@@ -41,55 +42,16 @@ const SmallFlight& TheSmallFlight() {
   return flight;
 }
 
-std::vector<FrameOutcome> DetectOffline() {
-  OfflineDetection detection(Backend::Create("cpu"), 320, 240, {});
-  for (const cv::Mat& frame : TheSmallFlight().frames) detection.Push(frame);
-  detection.Drain();
-  return detection.outcomes();
-}
-
-TEST(OfflineOptions, AreSetByNameWhereverTheyLive) {
-  OfflineOptions options;
-  SetOption(options, "reference=centre");
-  SetOption(options, "k=7");
-  SetOption(options, "threshold=31");
-  SetOption(options, "min-area=5");
-  SetOption(options, "device=cpu");
-  EXPECT_EQ(options.registration.reference, ReferenceMode::kCentre);
-  EXPECT_EQ(options.background.k, 7);
-  EXPECT_EQ(options.background.threshold, 31);
-  EXPECT_EQ(options.motion.min_area_px, 5);
-  EXPECT_EQ(options.device.device, "cpu");
-  EXPECT_THROW(SetOption(options, "k"), OptionError);
-  EXPECT_THROW(SetOption(options, "k=many"), OptionError);
-  EXPECT_THROW(SetOption(options, "no-such-option=1"), OptionError);
-}
-
-TEST(OfflineDetection, EveryFrameComesOutOnceAndTheSameEachTime) {
-  const std::vector<FrameOutcome> one = DetectOffline();
-  const std::vector<FrameOutcome> two = DetectOffline();
-  ASSERT_EQ(one.size(), static_cast<std::size_t>(kFrames));
-  ASSERT_EQ(two.size(), one.size());
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].registration.frame_number, i);
-    EXPECT_EQ(one[i].registration.previous_from_frame, two[i].registration.previous_from_frame);
-    ASSERT_EQ(one[i].detections.size(), two[i].detections.size());
-    for (std::size_t d = 0; d < one[i].detections.size(); ++d) {
-      EXPECT_EQ(one[i].detections[d].box.x, two[i].detections[d].box.x);
-      EXPECT_EQ(one[i].detections[d].track_id, two[i].detections[d].track_id);
-    }
+TEST(PipelineOption, IsCheckedAgainstTheElements) {
+  EXPECT_EQ(ParsePipelineOption("reference=centre"), PipelineOption("reference", "centre"));
+  EXPECT_EQ(ParsePipelineOption("device=a:b=c"), PipelineOption("device", "a:b=c"));
+  for (const char* known : {"k=7", "threshold=31", "min-area=5", "trails=false"}) {
+    EXPECT_NO_THROW(ParsePipelineOption(known)) << known;
   }
-}
-
-TEST(OfflineDetection, ComposedHomographiesFollowTheTruth) {
-  const RegistrationScore score = ScoreRegistration(FirstFromFrame(DetectOffline()),
-                                                    TheSmallFlight().first_from_frame, 320, 240);
-  EXPECT_EQ(score.pairs, kFrames - 1);
-  EXPECT_LT(score.mean_px.value(), 0.3);
-}
-
-TEST(OfflineDetection, RefusesFramesThatAreTooSmall) {
-  EXPECT_THROW(OfflineDetection(Backend::Create("cpu"), 16, 16, {}), OptionError);
+  // Nothing is published here.
+  for (const char* wrong : {"k", "k=many", "no-such-option=1", "stream=alpha"}) {
+    EXPECT_THROW(ParsePipelineOption(wrong), OptionError) << wrong;
+  }
 }
 
 TEST(KltRegistration, FollowsTheFlightFromTheSecondFrameOn) {

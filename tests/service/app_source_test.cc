@@ -7,7 +7,7 @@
 
 #include "service/app/option_settings.h"
 #include "service/app/pending_file.h"
-#include "service/app/source.h"
+#include "service/gstreamer/source.h"
 #include "service/options/option.h"
 #include "service/options/options.h"
 #include "service/options/overlay_options.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gst-plugins/homography_meta.h"
+#include "service/gstreamer/homography_meta.h"
 
 #include <gst/video/video.h>
 
-#include "gst-plugins/meta_registration.h"
-#include "gst-plugins/registration_transform.h"
+#include "service/gstreamer/meta_registration.h"
+#include "service/gstreamer/registration_transform.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "replay/benchmarks/pipeline_run.h"
+#include "replay/offline/pipeline_run.h"
 
 #include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
@@ -9,6 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "service/gstreamer/messages.h"
 #include "service/gstreamer/objects.h"
 #include "service/gstreamer/start.h"
 
@@ -22,7 +23,7 @@ void SetProperties(GstElement* pipeline, const PipelineSettings& settings) {
     // The queues and ends have properties of their own that may bear the same names.
     const GstElementFactory* factory = gst_element_get_factory(GST_ELEMENT(element));
     if (!g_str_has_prefix(GST_OBJECT_NAME(factory), "wh")) return;
-    for (const auto& [name, value] : static_cast<const PipelineSettings*>(data)->properties) {
+    for (const auto& [name, value] : static_cast<const PipelineSettings*>(data)->options) {
       SetProperty(element, name, value);
     }
   };
@@ -87,23 +88,6 @@ void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double f
   gst_app_src_end_of_stream(GST_APP_SRC(source));
 }
 
-// Waits for the end of the stream; throws what an element reports.
-void AwaitEnd(GstElement* pipeline) {
-  const ObjectPtr<GstBus> bus(gst_element_get_bus(pipeline));
-  GstMessage* message =
-      gst_bus_timed_pop_filtered(bus.get(), GST_CLOCK_TIME_NONE,
-                                 static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
-  std::string failure;
-  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
-    GError* error = nullptr;
-    gst_message_parse_error(message, &error, nullptr);
-    failure = error->message;
-    g_error_free(error);
-  }
-  gst_message_unref(message);
-  if (!failure.empty()) throw std::runtime_error(failure);
-}
-
 }  // namespace
 
 void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
@@ -124,13 +108,9 @@ void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_h
       const_cast<std::function<void(GstBuffer*)>*>(&leave), nullptr);
   gst_object_unref(pad);
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  std::string failure;
-  try {
-    PushFrames(source.get(), frames, frame_rate_hz);
-    AwaitEnd(pipeline.get());
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
+  PushFrames(source.get(), frames, frame_rate_hz);
+  const ObjectPtr<GstBus> bus(gst_element_get_bus(pipeline.get()));
+  const std::string failure = AwaitEnd(bus.get());
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   if (!failure.empty()) throw std::runtime_error("the pipeline failed: " + failure);
 }

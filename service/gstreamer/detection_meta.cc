@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gst-plugins/detection_meta.h"
+#include "service/gstreamer/detection_meta.h"
 
 #include <gst/video/video.h>
 

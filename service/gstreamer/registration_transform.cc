@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gst-plugins/registration_transform.h"
+#include "service/gstreamer/registration_transform.h"
 
 #include <Eigen/LU>
 #include <array>

@@ -11,11 +11,14 @@ typedef struct _GstBuffer GstBuffer;
 
 namespace windhover::replay {
 
-// Elements of one pipeline and how they are set, e.g. {"reference", "centre"}; a setting goes to
-// every element that has a property of that name.
+// Name and value, e.g. {"reference", "centre"}; goes to every element of ours that has a property
+// of that name.
+using PipelineOption = std::pair<std::string, std::string>;
+
+// Elements of one pipeline and how they are set.
 struct PipelineSettings {
   std::string elements;  // in gst-launch's syntax, from after the source to before the sink
-  std::vector<std::pair<std::string, std::string>> properties;
+  std::vector<PipelineOption> options;
 };
 
 // Plays frames that lie in memory through a GStreamer pipeline as fast as it takes them, and calls

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/app/source.h"
+#include "service/gstreamer/source.h"
 
 #include <glib.h>
 #include <spdlog/fmt/fmt.h>

@@ -12,5 +12,6 @@ void AddDetectCommand(CLI::App& app);
 void AddInfoCommand(CLI::App& app);
 void AddScoreCommand(CLI::App& app);
 void AddBenchCommand(CLI::App& app);
+void AddReportCommand(CLI::App& app);
 
 }  // namespace windhover::replay

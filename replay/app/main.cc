@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   windhover::replay::AddDetectCommand(app);
   windhover::replay::AddScoreCommand(app);
   windhover::replay::AddBenchCommand(app);
+  windhover::replay::AddReportCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -35,8 +35,60 @@ Json ToJson(const FigureTable& table) {
     for (const TableCell& cell : row) cells.push_back(ToJson(cell));
     rows.push_back(std::move(cells));
   }
-  return {{"name", table.name}, {"title", table.title}, {"columns", table.columns}, {"rows", rows}};
+  return {{"name", table.name},
+          {"title", table.title},
+          {"columns", table.columns},
+          {"rows", rows},
+          {"digits", table.digits}};
 }
+
+Json ToJson(const PlotAxis& axis) {
+  Json json = {{"label", axis.label}, {"log", axis.log}, {"categories", axis.categories}};
+  if (axis.range) json["range"] = *axis.range;
+  return json;
+}
+
+Json ToJson(const PlotSeries& series) {
+  Json points = Json::array();
+  for (const PlotPoint& point : series.points) {
+    Json numbers = {point.x, point.y};
+    if (point.y_high) numbers.push_back(*point.y_high);
+    points.push_back(std::move(numbers));
+  }
+  return {{"name", series.name}, {"line", series.line}, {"points", points}};
+}
+
+Json ToJson(const FigurePlot& plot) {
+  Json panels = Json::array();
+  for (const FigurePlot::Panel& panel : plot.panels) {
+    Json series = Json::array();
+    for (const PlotSeries& one : panel.series) series.push_back(ToJson(one));
+    panels.push_back({{"title", panel.title}, {"series", series}});
+  }
+  return {{"name", plot.name},
+          {"title", plot.title},
+          {"x", ToJson(plot.x)},
+          {"y", ToJson(plot.y)},
+          {"panels", panels}};
+}
+
+Json ToJson(const SampleFrame& sample) {
+  Json views = Json::array();
+  for (const SampleFrame::View& view : sample.views) {
+    Json marks = Json::array();
+    for (const SampleFrame::Mark& mark : view.marks) {
+      const Box& box = mark.box;
+      marks.push_back(
+          {{"kind", NameOf(mark.kind)}, {"box", {box.x, box.y, box.width, box.height}}});
+    }
+    views.push_back({{"title", view.title}, {"marks", marks}});
+  }
+  return {
+      {"sequence", sample.sequence}, {"frame", sample.frame}, {"width", sample.width},
+      {"height", sample.height},     {"views", views},        {"jpeg_base64", sample.jpeg_base64}};
+}
+
+}  // namespace
 
 std::string CellText(const TableCell& cell, int digits) {
   if (const std::string* text = std::get_if<std::string>(&cell)) return *text;
@@ -48,7 +100,17 @@ std::string CellText(const TableCell& cell, int digits) {
   return text;
 }
 
-}  // namespace
+const char* NameOf(SampleFrame::Kind kind) {
+  switch (kind) {
+    case SampleFrame::Kind::kHit:
+      return "hit";
+    case SampleFrame::Kind::kFalseAlarm:
+      return "false alarm";
+    case SampleFrame::Kind::kMiss:
+      return "miss";
+  }
+  return "";
+}
 
 void AddFigure(std::vector<Figure>& figures, std::string name, std::optional<double> value,
                std::string unit) {
@@ -81,6 +143,10 @@ std::string JsonText(const BenchmarkDocument& document) {
   }
   json["tables"] = Json::array();
   for (const FigureTable& table : document.tables) json["tables"].push_back(ToJson(table));
+  json["plots"] = Json::array();
+  for (const FigurePlot& plot : document.plots) json["plots"].push_back(ToJson(plot));
+  json["samples"] = Json::array();
+  for (const SampleFrame& sample : document.samples) json["samples"].push_back(ToJson(sample));
   json["left_out"] = document.left_out;
   return json.dump(2) + "\n";
 }

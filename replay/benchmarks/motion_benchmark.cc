@@ -2,6 +2,7 @@
 #include "replay/benchmarks/motion_benchmark.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "replay/benchmarks/dataset.h"
 #include "replay/benchmarks/motion_results.h"
 #include "replay/benchmarks/option_list.h"
+#include "replay/benchmarks/sample_frames.h"
 #include "replay/format/format_error.h"
 #include "replay/format/frame_source.h"
 #include "replay/format/truth.h"
@@ -24,7 +26,6 @@ namespace windhover::replay {
 namespace {
 
 // Figure 6.7.
-constexpr const char* kCurveSequence = "04";
 constexpr int kCurveThresholds[] = {40, 20, 10};  // grey levels
 constexpr int kCurveAreas[] = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 96, 128};
 
@@ -61,11 +62,12 @@ class MotionBenchmark {
   BenchmarkDocument Run();
 
  private:
-  std::vector<PeerRun> MakePeers(const std::string& id) const;
+  std::vector<PeerRun> MakePeers() const;
   std::vector<FrameOutcome> Detect(const std::filesystem::path& source, const std::string& what,
                                    const std::string& reference);
   void MeasureSequence(const DatasetSequence& sequence);
-  void AddCurve(const std::vector<LabelledBox>& truth, const std::vector<PeerRun>& peers);
+  void AddCurve(const std::string& id, const std::vector<LabelledBox>& truth,
+                const std::vector<PeerRun>& peers);
   void MeasureRealSet(const std::string& name);
 
   MotionBenchmarkSettings settings_;
@@ -87,11 +89,10 @@ MotionBenchmark::MotionBenchmark(const MotionBenchmarkSettings& settings,
 }
 
 // As many as there are contestants after the product's two modes, then those of figure 6.7.
-std::vector<PeerRun> MotionBenchmark::MakePeers(const std::string& id) const {
+std::vector<PeerRun> MotionBenchmark::MakePeers() const {
   std::vector<PeerRun> peers;
   peers.emplace_back(std::make_unique<FrameDifferencing>(BackgroundOptions(), MotionOptions()));
   peers.emplace_back(std::make_unique<StabilizedMog2>(MotionOptions()));
-  if (id != kCurveSequence) return peers;
   for (const int threshold : kCurveThresholds) {
     BackgroundOptions background;
     background.threshold = threshold;
@@ -102,7 +103,7 @@ std::vector<PeerRun> MotionBenchmark::MakePeers(const std::string& id) const {
   return peers;
 }
 
-void MotionBenchmark::AddCurve(const std::vector<LabelledBox>& truth,
+void MotionBenchmark::AddCurve(const std::string& id, const std::vector<LabelledBox>& truth,
                                const std::vector<PeerRun>& peers) {
   for (std::size_t i = 0; i < std::size(kCurveThresholds); ++i) {
     const PeerRun& run = peers[peers.size() - std::size(kCurveThresholds) + i];
@@ -112,7 +113,7 @@ void MotionBenchmark::AddCurve(const std::vector<LabelledBox>& truth,
       for (std::size_t box = 0; box < run.boxes.size(); ++box) {
         if (run.areas_px[box] >= area) kept.push_back(run.boxes[box]);
       }
-      results_.curve.push_back({kCurveThresholds[i], area, ScoreMotion(truth, kept)});
+      results_.curves[id].push_back({kCurveThresholds[i], area, ScoreMotion(truth, kept)});
     }
   }
 }
@@ -135,14 +136,18 @@ void MotionBenchmark::MeasureSequence(const DatasetSequence& sequence) {
   const SequenceTruth truth(sequence.folder, static_cast<int>(anchor.size()));
   const std::vector<LabelledBox> movers = truth.Movers();
   progress_.say("motion " + sequence.id + ", peers");
-  std::vector<PeerRun> peers = MakePeers(sequence.id);
+  std::vector<PeerRun> peers = MakePeers();
   const std::unique_ptr<FrameSource> source = OpenFrames(sequence.folder);
+  std::map<int, cv::Mat> pictures;  // samples, by the frame's number
+  const int frames = static_cast<int>(anchor.size());
   cv::Mat gray;
-  for (std::size_t i = 0; i < anchor.size(); ++i) {
-    cv::cvtColor(source->Next(), gray, cv::COLOR_BGR2GRAY);
+  for (int i = 0; i < frames; ++i) {
+    const cv::Mat picture = source->Next();
+    if (IsSample(i, frames)) pictures[i + 1] = picture.clone();
+    cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
     for (PeerRun& run : peers) {
       progress_.check();
-      run.Take(static_cast<int>(i) + 1, gray, anchor[i].registration);
+      run.Take(i + 1, gray, anchor[i].registration);
     }
   }
   const auto keep = [&](std::size_t contestant, const std::vector<LabelledBox>& boxes) {
@@ -153,7 +158,12 @@ void MotionBenchmark::MeasureSequence(const DatasetSequence& sequence) {
   for (std::size_t i = MotionResults::kFrameDifferencing; i < results_.contestants.size(); ++i) {
     keep(i, peers[i - MotionResults::kFrameDifferencing].boxes);
   }
-  if (sequence.id == kCurveSequence) AddCurve(movers, peers);
+  AddCurve(sequence.id, movers, peers);
+  for (const auto& [frame, picture] : pictures) {
+    const std::vector<SampleView> views = {{"frame differencing", peers.front().boxes},
+                                           {"windhover", BoxesOf(anchor)}};
+    results_.samples.push_back(MakeSample(sequence.id, frame, picture, movers, views));
+  }
 }
 
 void MotionBenchmark::MeasureRealSet(const std::string& name) {
@@ -198,6 +208,8 @@ BenchmarkDocument MotionBenchmark::Run() {
           .options = OptionList(settings_.frames),
           .figures = MotionFigures(results_),
           .tables = MotionTables(results_),
+          .plots = MotionPlots(results_),
+          .samples = results_.samples,
           .left_out = left_out_};
 }
 

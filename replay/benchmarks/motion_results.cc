@@ -133,21 +133,27 @@ FigureTable OverlapTable(const MotionResults& results) {
 }
 
 FigureTable CurveTable(const MotionResults& results) {
-  FigureTable table = {
-      .name = "motion.figure_6_7",
-      .title = "Figure 6.7: frame differencing on sequence 4 by threshold and size filter, in %",
-      .columns = {"threshold", "least area px", "precision", "recall"},
-      .rows = {},
-      .digits = 1};
-  for (const CurvePoint& point : results.curve) {
-    table.rows.push_back({point.threshold, point.min_area_px, PercentCell(point.score.precision()),
-                          PercentCell(point.score.recall())});
+  FigureTable table = {.name = "motion.figure_6_7",
+                       .title =
+                           "Figure 6.7: frame differencing on sequence 4 by least area of a "
+                           "component and by threshold in grey levels, in %",
+                       .columns = {"least area px"},
+                       .rows = {},
+                       .digits = 1};
+  const auto curve = results.curves.find("04");
+  if (curve == results.curves.end()) return table;
+  std::map<int, std::vector<TableCell>> rows;
+  for (const CurvePoint& point : curve->second) {
+    std::vector<TableCell>& row = rows[point.min_area_px];
+    if (row.empty()) row.emplace_back(point.min_area_px);
+    row.push_back(PercentCell(point.score.precision()));
+    row.push_back(PercentCell(point.score.recall()));
+    if (point.min_area_px == curve->second.front().min_area_px) {
+      table.columns.push_back("P at " + std::to_string(point.threshold));
+      table.columns.emplace_back("R");
+    }
   }
-  const auto ours = results.contestants[MotionResults::kAnchor].scores.find("04");
-  if (!table.rows.empty() && ours != results.contestants[MotionResults::kAnchor].scores.end()) {
-    table.rows.push_back({"windhover", TableCell(), PercentCell(ours->second[0].precision()),
-                          PercentCell(ours->second[0].recall())});
-  }
+  for (auto& [area, row] : rows) table.rows.push_back(std::move(row));
   return table;
 }
 

@@ -22,7 +22,7 @@ struct MotionContestant {
   std::map<std::string, OverlapScores> scores;  // by sequence
 };
 
-// Frame differencing on sequence 4 with one threshold and one size filter (figure 6.7).
+// Frame differencing with one threshold and one size filter (figure 6.7).
 struct CurvePoint {
   int threshold = 0;    // grey levels
   int min_area_px = 0;  // of a component
@@ -43,13 +43,15 @@ struct MotionResults {
   static constexpr std::size_t kAnchor = 0;  // the product by default
   static constexpr std::size_t kCentre = 1;
   static constexpr std::size_t kFrameDifferencing = 2;
-  std::vector<MotionContestant> contestants;  // these three, then other peers
-  std::vector<CurvePoint> curve;
+  std::vector<MotionContestant> contestants;              // these three, then other peers
+  std::map<std::string, std::vector<CurvePoint>> curves;  // by sequence
+  std::vector<SampleFrame> samples;
   std::vector<RealSetResult> real;
 };
 
 // Figures over the ten sequences are there only where all ten were measured.
 std::vector<Figure> MotionFigures(const MotionResults& results);
 std::vector<FigureTable> MotionTables(const MotionResults& results);
+std::vector<FigurePlot> MotionPlots(const MotionResults& results);
 
 }  // namespace windhover::replay

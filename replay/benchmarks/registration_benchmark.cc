@@ -256,6 +256,8 @@ BenchmarkDocument RegistrationBenchmark::Run() {
           .options = OptionList(settings_.frames),
           .figures = RegistrationFigures(results_),
           .tables = RegistrationTables(results_),
+          .plots = RegistrationPlots(results_),
+          .samples = {},
           .left_out = left_out_};
 }
 

@@ -80,5 +80,6 @@ std::optional<double> NormalisedCornerError(const FrameRegistration& registratio
 // Figures over the ten sequences are there only where all ten were measured.
 std::vector<Figure> RegistrationFigures(const RegistrationResults& results);
 std::vector<FigureTable> RegistrationTables(const RegistrationResults& results);
+std::vector<FigurePlot> RegistrationPlots(const RegistrationResults& results);
 
 }  // namespace windhover::replay

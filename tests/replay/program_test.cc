@@ -56,7 +56,7 @@ TEST(Program, HelpAndVersion) {
   EXPECT_EQ(Call("--version").code, 0);
   for (const char* command :
        {"", "render", "info", "detect", "score motion", "score registration", "bench speed",
-        "bench registration", "bench motion", "bench first-frame"}) {
+        "bench registration", "bench motion", "bench first-frame", "report"}) {
     const Answer answer = Call(std::string(command) + " --help");
     EXPECT_EQ(answer.code, 0) << command;
     EXPECT_THAT(answer.text, HasSubstr("Usage"));

@@ -66,13 +66,14 @@ const std::vector<std::string>& TenSequences() {
 }
 
 std::vector<std::string> AbsentSequences(const std::vector<DatasetSequence>& sequences) {
-  std::vector<std::string> lines;
+  std::string absent;
   for (const std::string& id : TenSequences()) {
     const bool found = std::any_of(sequences.begin(), sequences.end(),
                                    [&](const DatasetSequence& one) { return one.id == id; });
-    if (!found) lines.push_back("figures over the ten sequences: there is no " + id);
+    if (!found) absent += (absent.empty() ? "" : ", ") + id;
   }
-  return lines;
+  if (absent.empty()) return {};
+  return {"figures over the ten sequences: there is no " + absent};
 }
 
 std::string DatasetSha256(const std::vector<DatasetSequence>& sequences,

@@ -23,7 +23,8 @@ std::vector<DatasetSequence> FindSequences(const std::filesystem::path& dataset)
 // Names of the ten sequences of dataset B: "01" to "10".
 const std::vector<std::string>& TenSequences();
 
-// For each of the ten that is not among `sequences` a line that says what follows from that.
+// A line that names those of the ten that are not among `sequences` and says what follows; none
+// where all are.
 std::vector<std::string> AbsentSequences(const std::vector<DatasetSequence>& sequences);
 
 // SHA-256, in hexadecimal, over all files of the sequences in the order of their paths: for each

@@ -35,11 +35,8 @@ Json ToJson(const FigureTable& table) {
     for (const TableCell& cell : row) cells.push_back(ToJson(cell));
     rows.push_back(std::move(cells));
   }
-  return {{"name", table.name},
-          {"title", table.title},
-          {"columns", table.columns},
-          {"rows", rows},
-          {"digits", table.digits}};
+  return {{"name", table.name}, {"title", table.title},   {"columns", table.columns},
+          {"rows", rows},       {"digits", table.digits}, {"least_is_best", table.least_is_best}};
 }
 
 Json ToJson(const PlotAxis& axis) {

@@ -37,6 +37,7 @@ struct FigureTable {
   std::vector<std::string> columns;
   std::vector<std::vector<TableCell>> rows;  // each of as many cells as there are columns
   int digits = 2;                            // after the point, for people
+  bool least_is_best = false;                // the least number of a row stands out
 };
 
 struct PlotAxis {

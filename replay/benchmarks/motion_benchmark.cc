@@ -29,7 +29,8 @@ namespace {
 constexpr int kCurveThresholds[] = {40, 20, 10};  // grey levels
 constexpr int kCurveAreas[] = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 96, 128};
 
-constexpr const char* kRealSets[] = {"uavdt-s1301", "uav123-person12", "uav123-building4-static"};
+constexpr const char* kStillSet = "uav123-building4-static";  // its label is of a building
+constexpr const char* kRealSets[] = {"uavdt-s1301", "uav123-person12", kStillSet};
 
 OverlapScores ScoresOf(const std::vector<LabelledBox>& truth,
                        const std::vector<LabelledBox>& found) {
@@ -180,13 +181,12 @@ void MotionBenchmark::MeasureRealSet(const std::string& name) {
     throw FormatError(path, "gives " + std::to_string(frames) + " frames, but its labels are of " +
                                 std::to_string(recording.frames));
   }
-  RealSetResult result = {name, frames, static_cast<int>(boxes.size()), {}};
+  RealSetResult result = {name, frames, static_cast<int>(boxes.size()), name == kStillSet, {}};
   std::vector<LabelledBox> truth = recording.Truth();
   std::erase_if(truth, [&](const LabelledBox& box) { return box.frame > frames; });
-  // Its label is of a building.
-  const bool moves = name != "uav123-building4-static" && !truth.empty();
-  for (std::size_t i = 0; moves && i < kOverlaps.size(); ++i) {
-    result.recall.push_back(*ScoreMotion(truth, boxes, kOverlaps[i]).recall());
+  for (std::size_t i = 0; !result.still && i < kOverlaps.size(); ++i) {
+    const std::optional<double> recall = ScoreMotion(truth, boxes, kOverlaps[i]).recall();
+    if (recall) result.recall.push_back(*recall);
   }
   results_.real.push_back(std::move(result));
 }
@@ -202,6 +202,7 @@ BenchmarkDocument MotionBenchmark::Run() {
   }
   for (const char* name : kRealSets) MeasureRealSet(name);
   for (const std::string& line : AbsentSequences(sequences)) left_out_.push_back(line);
+  for (const std::string& line : UndefinedRatios(results_)) left_out_.push_back(line);
   progress_.say("taking the dataset's checksum");
   return {.device = device_,
           .dataset_sha256 = DatasetSha256(sequences, progress_),

@@ -81,6 +81,28 @@ TableCell PercentCell(std::optional<double> share) {
   return 100 * *share;
 }
 
+// Of the ten, as figures have it.
+void AddMeanRow(const MotionResults& results, FigureTable& table) {
+  if (TenRatios(results.contestants[MotionResults::kAnchor], 0, &MotionScore::recall).empty()) {
+    return;
+  }
+  std::vector<TableCell>& row = table.rows.emplace_back();
+  row.emplace_back("mean of the ten");
+  for (const auto& thesis : {kThesisFrameDifferencing, kThesisFiltering}) {
+    ThesisMotion sum = {0, 0};
+    for (const ThesisMotion& one : thesis) {
+      sum.precision += one.precision;
+      sum.recall += one.recall;
+    }
+    row.emplace_back(sum.precision / static_cast<double>(thesis.size()));
+    row.emplace_back(sum.recall / static_cast<double>(thesis.size()));
+  }
+  for (const MotionContestant& one : results.contestants) {
+    row.push_back(PercentCell(Mean(TenRatios(one, 0, &MotionScore::precision))));
+    row.push_back(PercentCell(Mean(TenRatios(one, 0, &MotionScore::recall))));
+  }
+}
+
 // Precision and recall in percent at kThesisOverlap, the thesis' beside ours.
 FigureTable PrecisionRecallTable(const MotionResults& results) {
   FigureTable table = {.name = "motion.table_6_1",
@@ -110,6 +132,7 @@ FigureTable PrecisionRecallTable(const MotionResults& results) {
       row.push_back(PercentCell(score.recall()));
     }
   }
+  AddMeanRow(results, table);
   return table;
 }
 
@@ -158,18 +181,20 @@ FigureTable CurveTable(const MotionResults& results) {
 }
 
 FigureTable RealTable(const MotionResults& results) {
-  FigureTable table = {.name = "motion.real",
-                       .title =
-                           "Real video: boxes a frame; recall of the labelled object in % at "
-                           "overlap 5 %, 25 % and 50 %",
-                       .columns = {"set", "frames", "boxes a frame", "recall 5", "25", "50"},
-                       .rows = {},
-                       .digits = 2};
+  FigureTable table = {
+      .name = "motion.real",
+      .title =
+          "Real video: boxes a frame, or false alarms where nothing moves; recall "
+          "of the labelled object in % at overlap 5 %, 25 % and 50 %",
+      .columns = {"set", "frames", "boxes a frame", "false alarms a frame", "recall 5", "25", "50"},
+      .rows = {},
+      .digits = 2};
   for (const RealSetResult& real : results.real) {
     std::vector<TableCell>& row = table.rows.emplace_back();
     row.emplace_back(real.name);
     row.emplace_back(real.frames);
-    row.emplace_back(static_cast<double>(real.boxes) / real.frames);
+    row.resize(4);
+    row[real.still ? 3 : 2] = static_cast<double>(real.boxes) / real.frames;
     for (const double recall : real.recall) row.emplace_back(100 * recall);
     row.resize(table.columns.size());
   }
@@ -189,7 +214,8 @@ std::vector<Figure> MotionFigures(const MotionResults& results) {
   constexpr const char* kOverlapNames[kOverlaps.size()] = {"recall_005", "recall_025", "recall_05"};
   for (const RealSetResult& real : results.real) {
     const std::string prefix = "motion.real." + real.name + ".";
-    AddFigure(figures, prefix + "boxes_per_frame", static_cast<double>(real.boxes) / real.frames);
+    AddFigure(figures, prefix + (real.still ? "false_alarms_per_frame" : "boxes_per_frame"),
+              static_cast<double>(real.boxes) / real.frames);
     for (std::size_t i = 0; i < real.recall.size(); ++i) {
       AddFigure(figures, prefix + kOverlapNames[i], real.recall[i]);
     }
@@ -197,10 +223,23 @@ std::vector<Figure> MotionFigures(const MotionResults& results) {
   return figures;
 }
 
+std::vector<std::string> UndefinedRatios(const MotionResults& results) {
+  std::vector<std::string> lines;
+  for (const MotionContestant& one : results.contestants) {
+    for (const auto& [id, scores] : one.scores) {
+      if (!scores[0].precision()) {
+        lines.push_back(one.prefix + "precision." + id + ": nothing was detected");
+      }
+      if (!scores[0].recall()) lines.push_back(one.prefix + "recall." + id + ": nothing moves");
+    }
+  }
+  return lines;
+}
+
 std::vector<FigureTable> MotionTables(const MotionResults& results) {
   std::vector<FigureTable> tables;
-  for (FigureTable& table : std::array{PrecisionRecallTable(results), OverlapTable(results),
-                                       CurveTable(results), RealTable(results)}) {
+  for (FigureTable& table : std::array{PrecisionRecallTable(results), CurveTable(results),
+                                       OverlapTable(results), RealTable(results)}) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   return tables;

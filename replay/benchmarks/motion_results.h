@@ -33,8 +33,9 @@ struct CurvePoint {
 struct RealSetResult {
   std::string name;
   int frames = 0;
-  int boxes = 0;  // detections in all frames
-  // Of the labelled object, at each of kOverlaps; empty where none is labelled that moves.
+  int boxes = 0;       // detections in all frames
+  bool still = false;  // nothing moves: every detection is a false alarm
+  // Of the labelled object, at each of kOverlaps; empty where there is none.
   std::vector<double> recall;
 };
 
@@ -51,6 +52,8 @@ struct MotionResults {
 
 // Figures over the ten sequences are there only where all ten were measured.
 std::vector<Figure> MotionFigures(const MotionResults& results);
+// A line for each precision and recall of a sequence that has nothing to divide by.
+std::vector<std::string> UndefinedRatios(const MotionResults& results);
 std::vector<FigureTable> MotionTables(const MotionResults& results);
 std::vector<FigurePlot> MotionPlots(const MotionResults& results);
 

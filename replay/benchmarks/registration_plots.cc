@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "replay/benchmarks/registration_results.h"
 #include "replay/benchmarks/thesis_results.h"
+#include "replay/benchmarks/timing.h"
 
 // The plots of `bench registration` (declared in registration_results.h).
 
@@ -12,15 +15,14 @@ namespace {
 
 using Tallies = std::map<std::string, PairTally>;
 
-// RegistrationOptions: 6 by 6.
-constexpr int kDefaultTiles = 36;
+constexpr std::string_view kDefaultLayout = "36";  // RegistrationOptions: 6 by 6
 
 std::optional<double> ThesisRms(const std::string& id) {
   const std::optional<int> index = ThesisSequence(id);
   if (!index) return std::nullopt;
   const auto* layout =
       std::find_if(std::begin(kThesisLayouts), std::end(kThesisLayouts),
-                   [](const ThesisLayout& one) { return one.tiles == kDefaultTiles; });
+                   [](const ThesisLayout& one) { return kDefaultLayout == one.name; });
   return layout->rms_px[*index];
 }
 
@@ -46,6 +48,30 @@ FigurePlot SequencePlot(const RegistrationResults& results, std::string name, st
   return plot;
 }
 
+FigurePlot LayoutTimePlot(const RegistrationResults& results) {
+  FigurePlot plot = {.name = "registration.figure_2_7",
+                     .title =
+                         "Figure 2.7: time of a frame by number of tiles, on a1 to a4: median, "
+                         "and a whisker to the 95th percentile",
+                     .x = {"tiles", false, {}, {}},
+                     .y = {"time of a frame, ms", false, {}, {}},
+                     .panels = {{}}};
+  for (const ThesisLayout& layout : kThesisLayouts) {
+    if (layout.columns > 0) plot.x.categories.emplace_back(layout.name);
+  }
+  for (const auto& [device, times] : results.layout_times_ms) {
+    PlotSeries& series = plot.panels.front().series.emplace_back();
+    series = {device, true, {}};
+    for (std::size_t i = 0; i < plot.x.categories.size(); ++i) {
+      const auto found = times.find(plot.x.categories[i]);
+      if (found == times.end() || found->second.empty()) continue;
+      series.points.push_back(
+          {static_cast<double>(i), Quantile(found->second, 0.5), Quantile(found->second, 0.95)});
+    }
+  }
+  return plot;
+}
+
 }  // namespace
 
 std::vector<FigurePlot> RegistrationPlots(const RegistrationResults& results) {
@@ -65,6 +91,7 @@ std::vector<FigurePlot> RegistrationPlots(const RegistrationResults& results) {
   plots.push_back(SequencePlot(results, "registration.gap10_by_sequence",
                                "Mean RMS by sequence, frames ten apart",
                                &RegistrationContestant::ten_apart));
+  if (!results.layout_times_ms.empty()) plots.push_back(LayoutTimePlot(results));
   std::erase_if(plots, [](const FigurePlot& plot) { return plot.x.categories.empty(); });
   return plots;
 }

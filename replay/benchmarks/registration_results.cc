@@ -84,9 +84,11 @@ void AddContestantFigures(const RegistrationContestant& contestant, std::vector<
 }  // namespace
 
 std::optional<double> PairRms(const std::optional<Eigen::Matrix3d>& measured,
-                              const Eigen::Matrix3d& truth, int width, int height) {
-  const std::optional<double> rms = RegistrationRms(
-      InFront(measured.value_or(Eigen::Matrix3d::Identity())), InFront(truth), width, height);
+                              const Eigen::Matrix3d& truth, int width, int height,
+                              const GroundSeen& ground) {
+  const std::optional<double> rms =
+      RegistrationRms(InFront(measured.value_or(Eigen::Matrix3d::Identity())), InFront(truth),
+                      width, height, ground);
   if (!rms) return std::nullopt;
   return std::min(*rms, std::hypot(width, height));
 }

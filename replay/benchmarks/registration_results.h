@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "replay/benchmarks/figures.h"
+#include "replay/scoring/registration_score.h"
 #include "service/vision/types.h"
 
 namespace windhover::replay {
@@ -21,7 +22,8 @@ inline constexpr double kGoodPx = 0.5;
 // diagonal at most, so that a mean over pairs stays a number. Nothing for pairs without common
 // ground.
 std::optional<double> PairRms(const std::optional<Eigen::Matrix3d>& measured,
-                              const Eigen::Matrix3d& truth, int width, int height);
+                              const Eigen::Matrix3d& truth, int width, int height,
+                              const GroundSeen& ground = {});
 
 struct PairTally {
   std::vector<double> rms_px;
@@ -59,9 +61,11 @@ struct FirstFrameSeconds {
 // What `bench registration` has measured.
 struct RegistrationResults {
   std::vector<RegistrationContestant> contestants;  // the product first
-  // The product's consecutive frames by number of tiles and by Blackman's alpha, then by sequence.
-  std::map<int, std::map<std::string, PairTally>> layouts;
-  std::map<double, PairTally> windows;  // on sequence a4
+  // The product's consecutive frames by layout as in the thesis, then by sequence.
+  std::map<std::string, std::map<std::string, PairTally>> layouts;
+  std::map<std::string, PairTally> windows;  // by window as in the thesis, on sequence a4
+  // Times of one frame by device, then by layout.
+  std::map<std::string, std::map<std::string, std::vector<double>>> layout_times_ms;
   // Whether a pair was flagged (degraded or lost), by where it is from: those over kFailurePx or
   // without truth, and those under kGoodPx.
   std::map<std::string, ShareTally> flagged_bad;

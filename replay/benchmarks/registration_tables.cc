@@ -65,7 +65,7 @@ FigureTable ContestantTable(const RegistrationResults& results) {
 // Mean RMS by sequence, a column for each contestant.
 FigureTable SequenceTable(const RegistrationResults& results, std::string name, std::string title,
                           Tallies RegistrationContestant::*tallies) {
-  FigureTable table = {std::move(name), std::move(title), {"sequence"}, {}, 3};
+  FigureTable table = {std::move(name), std::move(title), {"sequence"}, {}, 3, true};
   std::set<std::string> ids;
   for (const RegistrationContestant& one : results.contestants) {
     table.columns.push_back(one.title);
@@ -86,26 +86,21 @@ FigureTable LayoutTable(const RegistrationResults& results) {
                        .title = "Table 2.2: RMS in px by number of tiles",
                        .columns = {"sequence", "of"},
                        .rows = {},
-                       .digits = 3};
+                       .digits = 3,
+                       .least_is_best = true};
   std::set<std::string> ids;
-  for (const auto& [tiles, tallies] : results.layouts) {
-    table.columns.push_back(std::to_string(tiles));
+  for (const auto& [name, tallies] : results.layouts) {
     for (const auto& [id, tally] : tallies) ids.insert(id);
   }
+  for (const ThesisLayout& layout : kThesisLayouts) table.columns.emplace_back(layout.name);
   for (const std::string& id : ids) {
     std::vector<TableCell> ours = {id, "windhover"};
     std::vector<TableCell> thesis = {id, "thesis"};
     const std::optional<int> index = ThesisSequence(id);
-    for (const auto& [tiles, tallies] : results.layouts) {
-      ours.push_back(MeanCell(tallies, id));
-      const auto* found = std::find_if(std::begin(kThesisLayouts), std::end(kThesisLayouts),
-                                       [&](const ThesisLayout& one) { return one.tiles == tiles; });
-      const bool known = index && found != std::end(kThesisLayouts);
-      if (known) {
-        thesis.emplace_back(found->rms_px[*index]);
-      } else {
-        thesis.emplace_back();
-      }
+    for (const ThesisLayout& layout : kThesisLayouts) {
+      const auto found = results.layouts.find(layout.name);
+      ours.push_back(found == results.layouts.end() ? TableCell() : MeanCell(found->second, id));
+      if (index) thesis.emplace_back(layout.rms_px[*index]);
     }
     table.rows.push_back(std::move(ours));
     if (index) table.rows.push_back(std::move(thesis));
@@ -119,12 +114,38 @@ FigureTable WindowTable(const RegistrationResults& results) {
                        .columns = {"window", "windhover", "thesis"},
                        .rows = {},
                        .digits = 3};
+  if (results.windows.empty()) return table;
   for (const ThesisWindow& window : kThesisWindows) {
-    const auto found = results.windows.find(window.blackman_alpha);
-    if (found == results.windows.end()) continue;
-    char name[32];
-    std::snprintf(name, sizeof(name), "Blackman, alpha %g", window.blackman_alpha);
-    table.rows.push_back({name, CellOf(found->second.mean_px()), window.rms_px});
+    const auto found = results.windows.find(window.name);
+    table.rows.push_back(
+        {window.name,
+         found == results.windows.end() ? TableCell() : CellOf(found->second.mean_px()),
+         window.rms_px});
+  }
+  return table;
+}
+
+FigureTable LayoutTimeTable(const RegistrationResults& results) {
+  FigureTable table = {.name = "registration.figure_2_7",
+                       .title = "Figure 2.7: time of a frame in ms by number of tiles, on a1 to a4",
+                       .columns = {"tiles"},
+                       .rows = {},
+                       .digits = 2};
+  for (const auto& [device, times] : results.layout_times_ms) {
+    table.columns.push_back(device + " median");
+    table.columns.emplace_back("p95");
+  }
+  if (results.layout_times_ms.empty()) return table;
+  for (const ThesisLayout& layout : kThesisLayouts) {
+    if (layout.columns == 0) continue;
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row.emplace_back(layout.name);
+    for (const auto& [device, times] : results.layout_times_ms) {
+      const auto found = times.find(layout.name);
+      for (const double share : {0.5, 0.95}) {
+        row.push_back(found == times.end() ? TableCell() : QuantileCell(found->second, share));
+      }
+    }
   }
   return table;
 }
@@ -180,6 +201,7 @@ std::vector<FigureTable> RegistrationTables(const RegistrationResults& results) 
   if (results.contestants.empty()) return tables;
   keep(LayoutTable(results));
   keep(WindowTable(results));
+  keep(LayoutTimeTable(results));
   keep(ContestantTable(results));
   keep(SequenceTable(results, "registration.rms_by_sequence",
                      "Mean RMS in px, consecutive frames (slow peers: every tenth pair)",

@@ -45,8 +45,12 @@ TableCell ReadCell(const Json& json) {
 }
 
 FigureTable ReadTable(const Json& json) {
-  FigureTable table = {
-      json.at("name"), json.at("title"), json.at("columns"), {}, ValueOr(json, "digits", 2)};
+  FigureTable table = {json.at("name"),
+                       json.at("title"),
+                       json.at("columns"),
+                       {},
+                       ValueOr(json, "digits", 2),
+                       ValueOr(json, "least_is_best", false)};
   for (const Json& row : json.at("rows")) {
     if (row.size() != table.columns.size()) {
       throw std::runtime_error("table " + table.name + " has a row of " +

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <set>
 
 #include "replay/format/text_lines.h"
@@ -71,13 +72,31 @@ std::vector<bool> TextColumns(const FigureTable& table) {
   return texts;
 }
 
-std::string CellHtml(const TableCell& cell, int digits, bool text_column) {
-  const std::string text = Escaped(CellText(cell, digits));
+std::optional<double> NumberOf(const TableCell& cell) {
+  if (const double* number = std::get_if<double>(&cell)) return *number;
+  if (const int* count = std::get_if<int>(&cell)) return *count;
+  return std::nullopt;
+}
+
+// `best` is nothing where no number stands out.
+std::string CellHtml(const TableCell& cell, int digits, bool text_column,
+                     std::optional<double> best) {
   if (std::holds_alternative<std::monostate>(cell)) return "<td class=\"none\">–</td>";
-  if (IsText(cell)) return (text_column ? "<td class=\"text\">" : "<td>") + text + "</td>";
-  const double* number = std::get_if<double>(&cell);
-  const double value = number != nullptr ? *number : std::get<int>(cell);
-  return "<td><data value=\"" + NumberText(value, kAllDigits) + "\">" + text + "</data></td>";
+  const std::string text = Escaped(CellText(cell, digits));
+  const std::optional<double> value = NumberOf(cell);
+  if (!value) return (text_column ? "<td class=\"text\">" : "<td>") + text + "</td>";
+  return std::string(value == best ? "<td class=\"best\">" : "<td>") + "<data value=\"" +
+         NumberText(*value, kAllDigits) + "\">" + text + "</data></td>";
+}
+
+// Nothing where the row has but one number.
+std::optional<double> LeastOf(const std::vector<TableCell>& row) {
+  std::vector<double> numbers;
+  for (const TableCell& cell : row) {
+    if (const std::optional<double> number = NumberOf(cell)) numbers.push_back(*number);
+  }
+  if (numbers.size() < 2) return std::nullopt;
+  return *std::min_element(numbers.begin(), numbers.end());
 }
 
 std::string TableHtml(const FigureTable& table) {
@@ -93,7 +112,10 @@ std::string TableHtml(const FigureTable& table) {
   for (const std::vector<TableCell>& row : table.rows) {
     const bool thesis = std::find(row.begin(), row.end(), TableCell("thesis")) != row.end();
     html += thesis ? "<tr class=\"thesis\">" : "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) html += CellHtml(row[i], table.digits, texts[i]);
+    const std::optional<double> best = table.least_is_best ? LeastOf(row) : std::nullopt;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      html += CellHtml(row[i], table.digits, texts[i], best);
+    }
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";

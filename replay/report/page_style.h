@@ -18,7 +18,7 @@ p { margin: 6px 0 14px; max-width: 78ch; }
 .soft { color: var(--soft); font-size: 13.5px; }
 table { border-collapse: collapse; font-size: 13.5px; font-variant-numeric: tabular-nums;
   border-top: 1.5px solid var(--ink); border-bottom: 1.5px solid var(--ink); }
-caption { caption-side: top; text-align: left; font-weight: 600; font-size: 15px; padding: 0 0 7px; }
+caption { white-space: nowrap; caption-side: top; text-align: left; font-weight: 600; font-size: 15px; padding: 0 0 7px; }
 th, td { padding: 4px 11px; text-align: right; vertical-align: baseline; }
 th { font-weight: 600; vertical-align: bottom; }
 thead th { border-bottom: 1px solid var(--ink); }
@@ -26,6 +26,7 @@ thead th { border-bottom: 1px solid var(--ink); }
 th.text, td.text { text-align: left; }
 tbody tr:nth-child(even) { background: var(--band); }
 td.none { color: #9aa3ad; }
+td.best { font-weight: 700; }
 tr.thesis td { color: var(--soft); font-style: italic; }
 .table { margin: 30px 0; overflow-x: auto; }
 .wide table { font-size: 12.5px; }

@@ -10,7 +10,8 @@
 namespace windhover::replay {
 namespace {
 
-constexpr int kColumns = 5;  // of panels
+constexpr int kColumns = 5;        // of panels
+constexpr double kOnCurve = 0.65;  // size of markers there
 
 // Sizes in px of the drawing's own coordinates.
 struct PanelShape {
@@ -22,7 +23,7 @@ struct PanelShape {
   double bottom;
 };
 constexpr PanelShape kAlone = {1120, 440, 66, 14, 24, 56};
-constexpr PanelShape kOneOfMany = {224, 214, 40, 6, 22, 40};
+constexpr PanelShape kOneOfMany = {224, 210, 40, 11, 22, 40};
 
 std::string Line(double x1, double y1, double x2, double y2, const char* look) {
   return "<line class=\"" + std::string(look) + "\" x1=\"" + Px(x1) + "\" y1=\"" + Px(y1) +
@@ -92,13 +93,17 @@ void PanelDrawing::DrawAxes(bool with_x_label, bool with_y_label) {
     svg_ += Line(x, bottom, x, bottom + 4, "axis");
     svg_ += Text(x, bottom + 16, "tick middle", tick.label);
   }
+  for (std::size_t i = 1; i < plot_.x.categories.size(); ++i) {
+    const double x = X(static_cast<double>(i) - 0.5);
+    svg_ += Line(x, shape_.top, x, bottom, "grid");
+  }
   svg_ += Line(shape_.left, bottom, right, bottom, "axis");
   svg_ += Line(shape_.left, shape_.top, shape_.left, bottom, "axis");
   if (with_x_label) {
     svg_ += Text((shape_.left + right) / 2, shape_.height - 6, "label middle", plot_.x.label);
   }
   if (with_y_label) {
-    const double x = 12;
+    const double x = 10;
     const double y = (shape_.top + bottom) / 2;
     svg_ += Text(x, y, "label middle", plot_.y.label,
                  " transform=\"rotate(-90 " + Px(x) + " " + Px(y) + ")\"");
@@ -118,7 +123,7 @@ void PanelDrawing::DrawSeries(const PlotSeries& series, double offset) {
       const double high = Y(*point.y_high);
       markers += Line(x, y, x, high, "whisker") + Line(x - 4, high, x + 4, high, "whisker");
     }
-    markers += style.Marker(x, y);
+    markers += style.Marker(x, y, series.line ? kOnCurve : 1);
   }
   svg_ += "<g stroke=\"" + style.colour + "\" stroke-width=\"0\">";
   if (series.line && !line.empty()) {
@@ -162,7 +167,8 @@ std::string LegendHtml(const FigurePlot& plot, SeriesStyles& styles) {
         html += "<line x1=\"0\" y1=\"7\" x2=\"26\" y2=\"7\" stroke=\"" + style.colour +
                 "\" stroke-width=\"1.6\"/>";
       }
-      html += style.Marker(13, 7) + "</svg>" + Escaped(series.name) + "</span>";
+      html += style.Marker(13, 7, series.line ? kOnCurve : 1) + "</svg>" + Escaped(series.name) +
+              "</span>";
     }
   }
   return html + "</div>";

@@ -23,8 +23,8 @@ std::string Points(double x, double y, std::initializer_list<std::pair<double, d
 
 }  // namespace
 
-std::string SeriesStyle::Marker(double x, double y) const {
-  const double r = main ? 5.5 : 4.2;
+std::string SeriesStyle::Marker(double x, double y, double size) const {
+  const double r = size * (main ? 5.5 : 4.2);
   const bool stroked = shape == 4 || shape == 5;
   const std::string paint =
       stroked || hollow ? "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.8\"/>"

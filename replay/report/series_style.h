@@ -14,8 +14,8 @@ struct SeriesStyle {
   bool main = false;    // the product: larger
   bool hollow = false;  // not measured here
 
-  // An SVG element.
-  std::string Marker(double x, double y) const;
+  // An SVG element; `size` 1 is that of a point that stands alone.
+  std::string Marker(double x, double y, double size) const;
 };
 
 // One style for each name, the same wherever the name is met.

@@ -109,7 +109,8 @@ BenchmarkDocument HandMade() {
                       "Table <1>",
                       {"sequence", "of", "windhover", "pairs"},
                       {{"01", "windhover", 0.1234567890123, 59}, {"01", "thesis", 0.5, {}}},
-                      3}};
+                      3,
+                      true}};
   document.plots = {{"registration.t",
                      "A plot",
                      {"sequence", false, {"01", "02"}, {}},
@@ -196,6 +197,7 @@ TEST_F(Report, TablesHoldTheDocumentsNumbers) {
   EXPECT_THAT(values, ElementsAre(0.1234567890123, 59, 0.5));
   EXPECT_THAT(page.Texts("data"), ElementsAre("0.123", "59", "0.500"));
   EXPECT_EQ(page.CountOfClass("none"), 1);
+  EXPECT_EQ(page.CountOfClass("best"), 1);  // a row's only number is not
   EXPECT_THAT(page.Texts("span"),
               AllOf(Contains("registration.rms_px.01"), Contains("0.0625 px"), Contains("3")));
   EXPECT_THAT(page.Texts("li"), ElementsAre("figure 2.7: there is no a1"));

@@ -72,7 +72,8 @@ void CheckRendered(const fs::path& path) {
            entry.path().extension() == info.image_extension;
   });
   check(path / "gt", [&](const fs::directory_entry& entry, const std::string& name) {
-    return plain(entry) && (name == "gt.txt" || name == "static.txt" || name == "homography.txt");
+    return plain(entry) && (name == "gt.txt" || name == "static.txt" || name == "homography.txt" ||
+                            name == "horizon.txt");
   });
 }
 

@@ -11,13 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "replay/format/format_error.h"
 #include "replay/format/frame_source.h"
 #include "replay/format/homographies.h"
+#include "replay/format/horizon.h"
 #include "replay/format/labels.h"
 #include "replay/format/pending_folder.h"
 #include "replay/format/sequence.h"
 #include "replay/format/text_lines.h"
+#include "tests/replay/complaint.h"
 #include "tests/service/app_process.h"
 
 namespace windhover::replay {
@@ -29,17 +30,6 @@ using testing::HasSubstr;
 std::string Content(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The text of the FormatError that `action` throws.
-template <typename Action>
-std::string Complaint(Action&& action) {
-  try {
-    action();
-  } catch (const FormatError& error) {
-    return error.what();
-  }
-  return "(nothing thrown)";
 }
 
 TEST(SequenceFormat, InfoComesBackAsWritten) {
@@ -196,6 +186,23 @@ void WriteRendered(const std::filesystem::path& sequence, const std::string& nam
   WriteText(MoversPath(sequence), "");
   WriteText(DecoysPath(sequence), "");
   WriteText(HomographiesPath(sequence), "");
+  WriteText(HorizonPath(sequence), "");
+}
+
+TEST(HorizonFormat, ComesBackAsWritten) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder / "horizon.txt";
+  WriteHorizons(file, {{0.6, 0.8, -120.25}, {0, 1, -3}});
+  const std::vector<Eigen::Vector3d> read = ReadHorizons(file);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_TRUE(read[0].isApprox(Eigen::Vector3d(0.6, 0.8, -120.25), 1e-15));
+  const auto complain = [&](const char* text) {
+    WriteText(file, text);
+    return Complaint([&] { ReadHorizons(file); });
+  };
+  EXPECT_THAT(complain("1 0 1 -3\n3 0 1 -3\n"), HasSubstr("horizon.txt:2: expected frame 2"));
+  EXPECT_THAT(complain("1 0 0 -3\n"), HasSubstr("a and b"));
+  EXPECT_THAT(complain("1 0 1\n"), HasSubstr("expected 4 columns, got 3"));
 }
 
 TEST(PendingFolder, AppearsOnlyWhenComplete) {

@@ -20,6 +20,7 @@
 #include "replay/report/measured_document.h"
 #include "replay/report/page.h"
 #include "replay/report/plot_scale.h"
+#include "tests/replay/complaint.h"
 #include "tests/service/app_process.h"
 
 namespace windhover::replay {
@@ -144,14 +145,8 @@ class Report : public testing::Test {
   MeasuredDocument Measured(const BenchmarkDocument& document) const {
     return ReadMeasured(Write("bench.json", JsonText(document)));
   }
-  // Why a document cannot be read.
-  std::string Complaint(const std::string& text) const {
-    try {
-      ReadMeasured(Write("bench.json", text));
-    } catch (const FormatError& error) {
-      return error.what();
-    }
-    return "";
+  std::string ReadComplaint(const std::string& text) const {
+    return Complaint([&] { ReadMeasured(Write("bench.json", text)); });
   }
 
   ScratchFolder folder_;
@@ -239,17 +234,17 @@ TEST_F(Report, LeavesOutWhatADocumentDoesNotHave) {
 }
 
 TEST_F(Report, ErrorsNameTheFileAndWhatIsWrong) {
-  EXPECT_THAT(Complaint(""), AllOf(HasSubstr("bench.json: "), HasSubstr("parse error")));
-  EXPECT_THAT(Complaint("{\n\"machine\": {,"), HasSubstr("line 2"));
-  EXPECT_THAT(Complaint("[]"), HasSubstr("array"));
-  EXPECT_THAT(Complaint("{}"), HasSubstr("'machine'"));
+  EXPECT_THAT(ReadComplaint(""), AllOf(HasSubstr("bench.json: "), HasSubstr("parse error")));
+  EXPECT_THAT(ReadComplaint("{\n\"machine\": {,"), HasSubstr("line 2"));
+  EXPECT_THAT(ReadComplaint("[]"), HasSubstr("array"));
+  EXPECT_THAT(ReadComplaint("{}"), HasSubstr("'machine'"));
   const nlohmann::json good = nlohmann::json::parse(JsonText(HandMade()));
   const auto with = [&](const char* place, const nlohmann::json& value) {
     nlohmann::json bad = good;
     bad[nlohmann::json::json_pointer(place)] = value;
-    return Complaint(bad.dump());
+    return ReadComplaint(bad.dump());
   };
-  EXPECT_EQ(with("/device", "other"), "");
+  EXPECT_EQ(with("/device", "other"), "(nothing thrown)");
   EXPECT_THAT(with("/figures/0/value", "much"), HasSubstr("/figures/0/value"));
   EXPECT_THAT(with("/figures", 7), HasSubstr("figures is no list"));
   EXPECT_THAT(with("/tables/0/rows/0", {1, 2}), HasSubstr("row of 2 cells under 4 columns"));
@@ -264,14 +259,7 @@ TEST_F(Report, RefusesAFigureMeasuredTwice) {
   const MeasuredDocument a = Measured(HandMade());
   MeasuredDocument b = a;
   b.file = "other.json";
-  const auto complaint = [&] {
-    try {
-      CheckNoFigureTwice({a, b});
-    } catch (const FormatError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto complaint = [&] { return Complaint([&] { CheckNoFigureTwice({a, b}); }); };
   EXPECT_THAT(complaint(), AllOf(StartsWith("other.json: "), HasSubstr("registration.rms_px.01"),
                                  HasSubstr("bench.json"), HasSubstr("twice")));
   b.content.options[0].second = "all";
@@ -281,7 +269,7 @@ TEST_F(Report, RefusesAFigureMeasuredTwice) {
   b.machine.processor = "another";
   EXPECT_THAT(complaint(), HasSubstr("different machines"));
   for (Figure& figure : b.content.figures) figure.name = "motion." + figure.name;
-  EXPECT_EQ(complaint(), "");
+  EXPECT_EQ(complaint(), "(nothing thrown)");
   EXPECT_THAT(Parse(PageHtml({a, b})).Texts("h2"), SizeIs(2));
 }
 

@@ -3,109 +3,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <cstdlib>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "service/dds/conversion.h"
-#include "service/dds/handles.h"
-#include "service/dds/participant.h"
 #include "service/dds/publisher.h"
 #include "service/dds/subscriber.h"
+#include "tests/service/dds_fixture.h"
 #include "tests/service/dds_samples.h"
 #include "tests/support/allocation_count.h"
 
 namespace windhover {
 namespace {
 
-using std::chrono::seconds;
-using std::chrono::steady_clock;
-using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr auto kPatience = seconds(60);
-
-// Polls until the condition holds; false where it does not come true.
-template <typename Condition>
-bool PollUntil(Subscriber& subscriber, const Subscriber::Handlers& handlers, Condition condition) {
-  const auto deadline = steady_clock::now() + kPatience;
-  while (!condition()) {
-    const auto left = deadline - steady_clock::now();
-    if (left <= left.zero()) return false;
-    subscriber.Poll(left, handlers);
-  }
-  return true;
-}
-
-// Counts what Publisher says about its subscribers.
-class MatchCounter {
- public:
-  Publisher::SubscribersChanged callback() {
-    return [this](int subscribers) {
-      const std::lock_guard lock(mutex_);
-      subscribers_ = subscribers;
-      changed_.notify_all();
-    };
-  }
-  bool WaitFor(int subscribers) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kPatience, [&] { return subscribers_ == subscribers; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int subscribers_ = 0;
-};
-
-// A publisher and a subscriber that know each other, in a partition of their own.
-class DdsTest : public testing::Test {
- protected:
-  DdsTest() {
-    unsetenv("CYCLONEDDS_URI");
-    publish_.partition = partition_;
-    publish_.stream = "alpha";
-    publish_.max_blocking_ms = 20000;
-    publish_.history_depth = 0;
-    subscribe_.partition = partition_;
-  }
-
-  void Connect() {
-    subscriber_.emplace(subscribe_);
-    publisher_.emplace(publish_, matches_.callback());
-    int publishers = 0;
-    handlers_.publishers_changed = [&](int now) { publishers = now; };
-    ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return publishers == 1; }));
-    ASSERT_TRUE(matches_.WaitFor(1));
-    ASSERT_EQ(publisher_->subscribers(), 1);
-    handlers_.publishers_changed = nullptr;
-    handlers_.homography = [this](const HomographySample& sample) {
-      homographies_.push_back(sample);
-    };
-    handlers_.detections = [this](const DetectionsSample& sample) {
-      detections_.push_back(sample);
-    };
-    handlers_.end = [this](const std::string& stream, Topic topic, Subscriber::EndReason reason) {
-      ends_.push_back(stream + (topic == Topic::kHomography ? " homography" : " detections") +
-                      (reason == Subscriber::EndReason::kEnded ? " ended" : " lost"));
-    };
-  }
-
-  const std::string partition_ =
-      OwnPartition(testing::UnitTest::GetInstance()->current_test_info()->name());
-  PublishOptions publish_;
-  SubscribeOptions subscribe_;
-  MatchCounter matches_;
-  std::optional<Publisher> publisher_;
-  std::optional<Subscriber> subscriber_;
-  Subscriber::Handlers handlers_;
-  std::vector<HomographySample> homographies_;
-  std::vector<DetectionsSample> detections_;
-  std::vector<std::string> ends_;
-};
 
 TEST_F(DdsTest, CarriesHomographiesExactly) {
   Connect();
@@ -155,53 +67,6 @@ TEST_F(DdsTest, CarriesDetectionsExactlyAlsoNoneAndTheMost) {
   EXPECT_EQ(publisher_->counters().detections, 3);
   EXPECT_EQ(publisher_->counters().boxes, Publisher::kMaxDetections + 1);
   EXPECT_EQ(publisher_->counters().omitted, 3);
-}
-
-TEST_F(DdsTest, TellsTheEndOnceAfterTheLastSample) {
-  Connect();
-  for (int frame = 0; frame < 40; ++frame) {
-    ASSERT_TRUE(publisher_->Publish(SampleRegistration(frame, true), 8, 8, frame));
-    ASSERT_TRUE(publisher_->Publish(frame, 8, 8, frame, {}));
-  }
-  std::size_t samples_at_end = 0;
-  const auto note = handlers_.end;
-  handlers_.end = [&](const std::string& stream, Topic topic, Subscriber::EndReason reason) {
-    samples_at_end += topic == Topic::kHomography ? homographies_.size() : detections_.size();
-    note(stream, topic, reason);
-  };
-  std::thread end([&] { EXPECT_TRUE(publisher_->End()); });
-  EXPECT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return ends_.size() == 2; }));
-  end.join();
-  EXPECT_EQ(samples_at_end, 80);
-  // Nothing follows when the publisher goes.
-  publisher_.reset();
-  int publishers = 1;
-  handlers_.publishers_changed = [&](int now) { publishers = now; };
-  EXPECT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return publishers == 0; }));
-  std::sort(ends_.begin(), ends_.end());
-  EXPECT_THAT(ends_, ElementsAre("alpha detections ended", "alpha homography ended"));
-}
-
-TEST_F(DdsTest, EndsAStreamWithoutFramesWhenThePublisherGoes) {
-  Connect();
-  std::thread end([&] { publisher_.reset(); });
-  EXPECT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return ends_.size() == 2; }));
-  end.join();
-}
-
-TEST_F(DdsTest, StartsAnewAfterTheEnd) {
-  Connect();
-  std::thread run([&] {
-    for (int round = 0; round < 3; ++round) {
-      EXPECT_TRUE(publisher_->Publish(round, 8, 8, 0, {}));
-      EXPECT_TRUE(publisher_->End());
-    }
-  });
-  EXPECT_TRUE(PollUntil(*subscriber_, handlers_, [&] {
-    return detections_.size() == 3 &&
-           std::count(ends_.begin(), ends_.end(), "alpha detections ended") == 3;
-  }));
-  run.join();
 }
 
 TEST_F(DdsTest, FiltersByStream) {
@@ -301,49 +166,6 @@ TEST_F(DdsTest, InterruptEndsALongHandover) {
   EXPECT_LT(homographies_.size(), kFrames / 2);
   // What is left comes with the next calls.
   EXPECT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return homographies_.size() == kFrames; }));
-}
-
-// An end is told also where its sample is the last of a whole handover.
-TEST_F(DdsTest, TellsTheEndAfterAnyNumberOfSamples) {
-  Connect();
-  std::size_t ended = 0;
-  for (int frames = 1; frames <= 64; ++frames) {
-    for (int frame = 0; frame < frames; ++frame) {
-      ASSERT_TRUE(publisher_->Publish(frame, 8, 8, frame, {}));
-    }
-    ASSERT_TRUE(publisher_->End());
-    ended += 1;
-    ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] {
-      return static_cast<std::size_t>(
-                 std::count(ends_.begin(), ends_.end(), "alpha detections ended")) == ended;
-    })) << frames;
-  }
-}
-
-// The subscriber looks only when the publisher is back again.
-TEST_F(DdsTest, APublisherThatCameBackWasLost) {
-  subscriber_.emplace(subscribe_);
-  handlers_.end = [this](const std::string& stream, Topic, Subscriber::EndReason reason) {
-    ends_.push_back(stream + (reason == Subscriber::EndReason::kEnded ? " ended" : " lost"));
-  };
-  handlers_.detections = [this](const DetectionsSample& sample) { detections_.push_back(sample); };
-  const Participant participant(0);
-  const Entity topic(dds_create_topic(participant.get(), DetectionsDescriptor(), kDetectionsTopic,
-                                      nullptr, nullptr),
-                     "dds_create_topic");
-  const Qos qos = MakeQos(true, 1000, 0, partition_);
-  DetectionsMessage message("alpha");
-  int publishers = 0;
-  handlers_.publishers_changed = [&](int now) { publishers = now; };
-  for (int life = 0; life < 2; ++life) {
-    const Entity writer(dds_create_writer(participant.get(), topic.get(), qos.get(), nullptr),
-                        "dds_create_writer");
-    message.Set(static_cast<std::uint64_t>(life), 8, 8, 0, {});
-    ASSERT_EQ(dds_write(writer.get(), message.data()), DDS_RETCODE_OK);
-  }
-  ASSERT_TRUE(PollUntil(*subscriber_, handlers_, [&] { return ends_.size() == 2; }));
-  EXPECT_EQ(detections_.size(), 2);
-  EXPECT_THAT(ends_, ElementsAre("alpha lost", "alpha lost"));
 }
 
 TEST_F(DdsTest, CountsSubscribersOfOnePartition) {

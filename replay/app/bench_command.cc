@@ -9,6 +9,7 @@
 #include "replay/app/commands.h"
 #include "replay/app/interrupt.h"
 #include "replay/app/picture_size.h"
+#include "replay/app/rendered_dataset.h"
 #include "replay/benchmarks/figures.h"
 #include "replay/benchmarks/first_frame.h"
 #include "replay/benchmarks/machine.h"
@@ -25,7 +26,7 @@ constexpr int kQuickStressPictures = 2;
 
 struct BenchSettings {
   // Of registration and motion.
-  std::filesystem::path dataset = "B";
+  std::filesystem::path dataset;  // empty: is rendered
   std::filesystem::path data = "../shared/data";
   bool quick = false;
   // Of speed.
@@ -56,10 +57,17 @@ void Finish(const BenchSettings& settings, const BenchmarkDocument& document) {
   if (!settings.json.empty()) WriteText(settings.json, JsonText(document));
 }
 
+// Null where a dataset is given.
+TemporaryFolder RenderedFor(const BenchSettings& settings) {
+  if (!settings.dataset.empty()) return nullptr;
+  return RenderDataset(settings.quick ? kQuickFrames : 0);
+}
+
 void BenchRegistration(const BenchSettings& settings) {
   CatchInterrupts();
+  const TemporaryFolder rendered = RenderedFor(settings);
   RegistrationBenchmarkSettings benchmark;
-  benchmark.dataset = settings.dataset;
+  benchmark.dataset = rendered ? *rendered : settings.dataset;
   benchmark.data = settings.data;
   if (settings.quick) {
     benchmark.frames = kQuickFrames;
@@ -72,8 +80,9 @@ void BenchRegistration(const BenchSettings& settings) {
 
 void BenchMotion(const BenchSettings& settings) {
   CatchInterrupts();
+  const TemporaryFolder rendered = RenderedFor(settings);
   MotionBenchmarkSettings benchmark;
-  benchmark.dataset = settings.dataset;
+  benchmark.dataset = rendered ? *rendered : settings.dataset;
   benchmark.data = settings.data;
   if (settings.quick) benchmark.frames = kQuickFrames;
   Finish(settings, RunMotionBenchmark(benchmark, {Say, ThrowIfInterrupted}));
@@ -124,10 +133,9 @@ void BenchSpeed(BenchSettings settings) {
 }
 
 void AddDatasetOptions(CLI::App& command, BenchSettings& settings) {
-  command
-      .add_option("--dataset", settings.dataset,
-                  "Folder of sequences, as 'render --sequence all' makes it")
-      ->capture_default_str();
+  command.add_option("--dataset", settings.dataset,
+                     "Folder of sequences, as 'render --sequence all,a1,a2,a3,a4,s1' makes it; "
+                     "default: they are rendered into a temporary folder first");
   command.add_option("--data", settings.data, "Folder of real sets; what is absent is left out")
       ->capture_default_str();
   command.add_flag("--quick", settings.quick, "The first 60 frames of each sequence only");

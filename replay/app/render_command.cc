@@ -12,6 +12,7 @@
 #include "replay/app/interrupt.h"
 #include "replay/app/picture_size.h"
 #include "replay/app/progress.h"
+#include "replay/app/render_sequences.h"
 #include "replay/format/format_error.h"
 #include "replay/format/homographies.h"
 #include "replay/format/horizon.h"
@@ -24,16 +25,6 @@
 
 namespace windhover::replay {
 namespace {
-
-struct RenderSettings {
-  std::string sequences = "flight";
-  std::filesystem::path out;
-  int frames = 0;
-  std::string size;
-  std::uint64_t seed = 0;
-  std::filesystem::path ground;
-  int threads = 0;
-};
 
 // Whether any pixel of the picture sees the sky.
 bool ShowsSky(const Eigen::Vector3d& horizon, const SequenceInfo& info) {
@@ -121,22 +112,24 @@ void RenderSequence(FlightPlan plan, const RenderSettings& settings,
   WriteTruth(folder.path(), info, truth);
   WriteSequenceInfo(folder.path(), info);
   folder.Commit();
-  std::printf("%s\n", out.string().c_str());
-}
-
-void Render(const RenderSettings& settings) {
-  const std::vector<FlightPlan> plans = FindFlightPlans(settings.sequences);
-  CatchInterrupts();
-  for (const FlightPlan& plan : plans) {
-    try {
-      RenderSequence(plan, settings, plans.size() == 1 ? settings.out : settings.out / plan.number);
-    } catch (const Interrupted&) {
-      throw Interrupted("nothing half-written is left");
-    }
-  }
 }
 
 }  // namespace
+
+void RenderSequences(const RenderSettings& settings,
+                     const std::function<void(const std::filesystem::path&)>& done) {
+  const std::vector<FlightPlan> plans = FindFlightPlans(settings.sequences);
+  CatchInterrupts();
+  for (const FlightPlan& plan : plans) {
+    const std::filesystem::path out = plans.size() == 1 ? settings.out : settings.out / plan.number;
+    try {
+      RenderSequence(plan, settings, out);
+    } catch (const Interrupted&) {
+      throw Interrupted("nothing half-written is left");
+    }
+    done(out);
+  }
+}
 
 void AddRenderCommand(CLI::App& app) {
   auto settings = std::make_shared<RenderSettings>();
@@ -167,7 +160,11 @@ void AddRenderCommand(CLI::App& app) {
       ->add_option("--threads", settings->threads,
                    "Threads; default: one a core. The files are the same")
       ->check(CLI::Range(1, 1024));
-  command->final_callback([settings] { Render(*settings); });
+  command->final_callback([settings] {
+    RenderSequences(*settings, [](const std::filesystem::path& sequence) {
+      std::printf("%s\n", sequence.string().c_str());
+    });
+  });
 }
 
 }  // namespace windhover::replay

@@ -346,17 +346,23 @@ bool HoldsPicture(const std::filesystem::path& folder) {
   return false;
 }
 
-// Interrupts a rendering of `frames` frames once `reached` says so, within a minute.
+// Interrupts the program once `reached` says so, within a minute. Returns what it has said.
 template <typename Reached>
-std::string InterruptRendering(const ScratchFolder& folder, int frames, Reached&& reached) {
-  Process program({WINDHOVER_REPLAY, "render", "--frames", std::to_string(frames), "--size",
-                   "320x240", "--out", folder / "flight"});
+std::string Interrupt(Process& program, Reached&& reached) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!reached(program) && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
   EXPECT_TRUE(reached(program)) << program.ErrorText();
   program.Signal(SIGINT);
   EXPECT_EQ(program.Wait(), 130);
   return program.ErrorText();
+}
+
+// Renders `frames` frames until `reached` says so.
+template <typename Reached>
+std::string InterruptRendering(const ScratchFolder& folder, int frames, Reached&& reached) {
+  Process program({WINDHOVER_REPLAY, "render", "--frames", std::to_string(frames), "--size",
+                   "320x240", "--out", folder / "flight"});
+  return Interrupt(program, reached);
 }
 
 TEST(Program, AnInterruptLeavesNoFramesBehind) {
@@ -374,6 +380,19 @@ TEST(Program, AnInterruptEndsThePaintingOfTheGround) {
   });
   EXPECT_THAT(text, AllOf(HasSubstr("nothing half-written is left"), Not(HasSubstr("rendering"))));
   EXPECT_THAT(folder.Names(), testing::IsEmpty());
+}
+
+TEST(Program, ABenchmarkWithoutDatasetRendersOneThatGoesWithIt) {
+  const ScratchFolder folder;
+  for (const char* benchmark : {"registration", "motion"}) {
+    Process program({WINDHOVER_REPLAY, "bench", benchmark, "--quick"},
+                    {"TMPDIR=" + folder.path().string()});
+    Interrupt(program, [&](const Process& running) {
+      return running.ErrorText().find("painting the ground of 01") != std::string::npos &&
+             !folder.Names().empty();
+    });
+    EXPECT_THAT(folder.Names(), testing::IsEmpty()) << benchmark;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <spdlog/fmt/fmt.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -8,7 +6,6 @@
 
 #include "replay/app/commands.h"
 #include "replay/app/interrupt.h"
-#include "replay/app/picture_size.h"
 #include "replay/app/rendered_dataset.h"
 #include "replay/benchmarks/figures.h"
 #include "replay/benchmarks/first_frame.h"
@@ -28,12 +25,8 @@ struct BenchSettings {
   // Of registration and motion.
   std::filesystem::path dataset;  // empty: is rendered
   std::filesystem::path data = "../shared/data";
-  bool quick = false;
-  // Of speed.
-  SpeedBenchmarkSettings speed;
-  int frames = 0;
-  std::string size;
 
+  bool quick = false;
   std::filesystem::path first_frame_of;
   std::filesystem::path json;
 };
@@ -88,48 +81,12 @@ void BenchMotion(const BenchSettings& settings) {
   Finish(settings, RunMotionBenchmark(benchmark, {Say, ThrowIfInterrupted}));
 }
 
-FigureTable SpeedTable(const SpeedBenchmarkSettings& settings, const SpeedBenchmarkResult& result) {
-  FigureTable table = {
-      .name = "speed.contestants",
-      .title = fmt::format("{}x{}, 36 tiles, k = 10, {} frames, {} rounds", settings.plan.width,
-                           settings.plan.height, settings.plan.frames, settings.rounds),
-      .columns = {"", "frames/s", "median ms", "p95 ms", "RMS px", "to KLT"},
-      .rows = {},
-      .digits = 3};
-  const double klt_fps = result.contestants.front().fps;
-  for (const SpeedContestant& one : result.contestants) {
-    table.rows.push_back({one.name, one.fps, one.median_ms, one.p95_ms, TableCell(), TableCell()});
-    if (one.rms_px == 0) continue;  // a pipeline
-    table.rows.back()[4] = one.rms_px;
-    table.rows.back()[5] = one.fps / klt_fps;
-  }
-  return table;
-}
-
-void BenchSpeed(BenchSettings settings) {
-  if (settings.frames > 0) settings.speed.plan.frames = settings.frames;
-  if (!settings.size.empty()) {
-    ParseSize(settings.size, settings.speed.plan.width, settings.speed.plan.height);
-  }
-  settings.speed.threads = ThisMachine().cores;
+void BenchSpeed(const BenchSettings& settings) {
   CatchInterrupts();
-  const SpeedBenchmarkResult result = RunSpeedBenchmark(settings.speed, Say);
-  const SpeedBenchmarkSettings& speed = settings.speed;
-  BenchmarkDocument document;
-  document.device = result.default_device;
-  document.options = {{"opencl", result.opencl_device},
-                      {"plugin", result.plugin_file},
-                      {"sequence", speed.plan.number},
-                      {"seed", std::to_string(speed.plan.seed)},
-                      {"size", fmt::format("{}x{}", speed.plan.width, speed.plan.height)},
-                      {"frames", std::to_string(speed.plan.frames)},
-                      {"rounds", std::to_string(speed.rounds)}};
-  document.figures = result.figures;
-  document.tables = {SpeedTable(speed, result)};
-  std::printf("OpenCL: %s\nplugin: %s\n",
-              result.opencl_device.empty() ? "none" : result.opencl_device.c_str(),
-              result.plugin_file.c_str());
-  Finish(settings, document);
+  SpeedBenchmarkSettings benchmark =
+      settings.quick ? QuickSpeedBenchmark() : SpeedBenchmarkSettings();
+  benchmark.threads = ThisMachine().cores;
+  Finish(settings, RunSpeedBenchmark(benchmark, {Say, ThrowIfInterrupted}));
 }
 
 void AddDatasetOptions(CLI::App& command, BenchSettings& settings) {
@@ -143,16 +100,10 @@ void AddDatasetOptions(CLI::App& command, BenchSettings& settings) {
 }
 
 void AddSpeedCommand(CLI::App& bench, const std::shared_ptr<BenchSettings>& settings) {
-  settings->speed.plan = FindFlightPlan("flight");
   CLI::App* speed = bench.add_subcommand("speed",
                                          "Frames a second of registration alone and of the "
                                          "whole pipeline, CPU and OpenCL, beside KLT");
-  speed->add_option("--frames", settings->frames, "Frames of the flight; default: as it has")
-      ->check(CLI::Range(84, 100000));
-  speed->add_option("--rounds", settings->speed.rounds, "Times that everything is measured in turn")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  speed->add_option("--size", settings->size, "WIDTHxHEIGHT in px; default 640x480");
+  speed->add_flag("--quick", settings->quick, "One flight and fewer frames");
   speed->add_option("--json", settings->json, "File for figures and tables, for scripts");
   speed->final_callback([settings] { BenchSpeed(*settings); });
 }

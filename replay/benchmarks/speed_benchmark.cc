@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/benchmarks/speed_benchmark.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <memory>
 #include <opencv2/imgproc.hpp>
@@ -10,272 +9,220 @@
 #include <utility>
 
 #include "gpu-kernels/backend.h"
-#include "replay/baselines/klt_registration.h"
+#include "replay/benchmarks/speed_contestants.h"
 #include "replay/benchmarks/timing.h"
 #include "replay/offline/pipeline_run.h"
-#include "replay/offline/product_registration.h"
 #include "replay/render/parallel.h"
-#include "replay/render/renderer.h"
-#include "replay/scoring/registration_score.h"
 #include "service/gstreamer/start.h"
 
 namespace windhover::replay {
 namespace {
 
-constexpr int kRegistrationWarmUp = 10;
-constexpr int kPipelineWarmUp = 42;  // twice the window of 2k + 1 frames at k = 10
-// Short queues: a frame that waits in one was registered before it is counted.
-constexpr const char* kPipeline =
-    "whregister ! queue max-size-buffers=2 max-size-bytes=0 max-size-time=0 ! whbackground ! "
-    "queue max-size-buffers=2 max-size-bytes=0 max-size-time=0 ! whmotion";
-// Frames that can be on the way: k = 10 held for their future, two in each queue, one in each
-// element's hands. The last ones are not counted, so that as many are on the way when the count
-// ends as when it starts, and each stage does the work of as many frames as are counted.
-constexpr std::size_t kOnTheWay = 10 + 2 * 2 + 3;
+std::string SizeText(const SpeedSize& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
 
-struct Flight {
-  std::vector<cv::Mat> gray;  // CV_8UC1
-  std::vector<cv::Mat> i420;
-  std::vector<Eigen::Matrix3d> first_from_frame;
-  int width = 0;
-  int height = 0;
-};
-
-Flight RenderFlight(const SpeedBenchmarkSettings& settings) {
-  const Renderer renderer(settings.plan, settings.threads);
-  Flight flight;
-  const int frames = settings.plan.frames;
-  flight.gray.resize(frames);
-  flight.i420.resize(frames);
-  flight.first_from_frame.resize(frames);
-  flight.width = settings.plan.width;
-  flight.height = settings.plan.height;
-  ForEachInParallel(frames, settings.threads, [&](int i) {
-    const cv::Mat frame = renderer.Frame(i);
-    cv::cvtColor(frame, flight.gray[i], cv::COLOR_BGR2GRAY);
-    cv::cvtColor(frame, flight.i420[i], cv::COLOR_BGR2YUV_I420);
-    flight.first_from_frame[i] = renderer.TrueHomography(i);
+SpeedFlight RenderFlight(const std::string& sequence, const SpeedSize& size, int threads,
+                         const BenchmarkProgress& progress) {
+  FlightPlan plan = FindFlightPlan(sequence);
+  plan.width = size.width;
+  plan.height = size.height;
+  progress.say("rendering sequence " + plan.number + ", " + SizeText(size) + ", " +
+               std::to_string(size.frames) + " frames");
+  const Renderer renderer(plan, threads, progress.check, size.frames);
+  SpeedFlight flight = {size.width, size.height, plan.frame_rate_hz, {}, {}};
+  flight.i420.resize(size.frames);
+  flight.truth.resize(size.frames);
+  ForEachInParallel(size.frames, threads, [&](int i) {
+    progress.check();
+    cv::cvtColor(renderer.Frame(i), flight.i420[i], cv::COLOR_BGR2YUV_I420);
+    flight.truth[i] = renderer.Truth(i);
   });
   return flight;
 }
 
-class Contestant {
+struct Device {
+  std::string name;  // in figures
+  std::string selector;
+};
+
+class SpeedBenchmark {
  public:
-  Contestant(std::string name, std::string figure) : figure_(std::move(figure)) {
-    result_.name = std::move(name);
-  }
-  virtual ~Contestant() = default;
-
-  void RunRound(const Flight& flight) {
-    const std::size_t before = times_ms_.size();
-    TimeFrames(flight);
-    double taken_ms = 0;
-    for (std::size_t i = before; i < times_ms_.size(); ++i) taken_ms += times_ms_[i];
-    round_fps_.push_back(1000 * static_cast<double>(times_ms_.size() - before) / taken_ms);
-  }
-
-  SpeedContestant Result() const {
-    SpeedContestant result = result_;
-    result.median_ms = Quantile(times_ms_, 0.5);
-    result.p95_ms = Quantile(times_ms_, 0.95);
-    result.frames = static_cast<int>(times_ms_.size());
-    result.fps = Quantile(round_fps_, 0.5);
-    result.rms_px = rms_pairs_ > 0 ? rms_sum_ / rms_pairs_ : 0;
-    return result;
-  }
-  const std::string& figure() const { return figure_; }
-
- protected:
-  // Appends the time of each frame that counts to times_ms_.
-  virtual void TimeFrames(const Flight& flight) = 0;
-
-  // Registers all frames with `one`, which returns previous_from_frame, one after the other.
-  template <typename RegisterOne>
-  void TimeRegistration(const Flight& flight, RegisterOne&& one) {
-    for (std::size_t i = 0; i < flight.gray.size(); ++i) {
-      const Clock::time_point start = Clock::now();
-      const Eigen::Matrix3d previous_from_frame = one(flight.gray[i]);
-      const double taken = Milliseconds(Clock::now() - start);
-      if (i < kRegistrationWarmUp) continue;
-      times_ms_.push_back(taken);
-      const Eigen::Matrix3d truth =
-          flight.first_from_frame[i - 1].inverse() * flight.first_from_frame[i];
-      const std::optional<double> rms =
-          RegistrationRms(previous_from_frame, truth, flight.width, flight.height);
-      if (!rms) continue;
-      rms_sum_ += *rms;
-      ++rms_pairs_;
-    }
-  }
-
-  std::vector<double> times_ms_;
+  SpeedBenchmark(const SpeedBenchmarkSettings& settings, const BenchmarkProgress& progress);
+  BenchmarkDocument Run();
 
  private:
-  std::string figure_;
-  SpeedContestant result_;
-  std::vector<double> round_fps_;
-  double rms_sum_ = 0;
-  int rms_pairs_ = 0;
+  using Contestants = std::vector<std::unique_ptr<SpeedContestant>>;
+
+  Contestants MakeContestants(const SpeedSize& size) const;
+  void MeasureSize(const SpeedSize& size);
+  void AddFigures(const Contestants& contestants, const SpeedSize& size);
+  void AddTable(const Contestants& contestants, const SpeedSize& size);
+
+  SpeedBenchmarkSettings settings_;
+  BenchmarkProgress progress_;
+  std::vector<Device> devices_;  // the default one first
+  BenchmarkDocument document_;
 };
 
-class RegistrationContestant : public Contestant {
- public:
-  RegistrationContestant(std::string name, std::string figure, const std::string& device,
-                         ReferenceMode mode)
-      : Contestant(std::move(name), std::move(figure)), backend_(Backend::Create(device)) {
-    options_.reference = mode;
-  }
-
-  void TimeFrames(const Flight& flight) override {
-    ProductRegistration registration(backend_, flight.width, flight.height, options_);
-    TimeRegistration(flight, [&](const cv::Mat& gray) {
-      registration.Register(gray);
-      return registration.last().previous_from_frame;
-    });
-  }
-
- private:
-  std::shared_ptr<Backend> backend_;
-  RegistrationOptions options_;
-};
-
-class KltContestant : public Contestant {
- public:
-  KltContestant() : Contestant("KLT grid + RANSAC", "peer.klt.fps") {}
-  void TimeFrames(const Flight& flight) override {
-    KltRegistration klt;
-    TimeRegistration(flight, [&](const cv::Mat& gray) {
-      return klt.Register(gray).value_or(Eigen::Matrix3d::Identity());
-    });
-  }
-};
-
-// The time of a frame is the time from its predecessor's leaving the pipeline to its own.
-class PipelineContestant : public Contestant {
- public:
-  PipelineContestant(std::string name, std::string figure, const std::string& device,
-                     const std::string& mode, double frame_rate_hz, std::size_t frames)
-      : Contestant(std::move(name), std::move(figure)),
-        settings_{kPipeline, {{"device", device}, {"reference", mode}}},
-        frame_rate_hz_(frame_rate_hz),
-        frames_(frames) {}
-
-  void TimeFrames(const Flight& flight) override {
-    const std::vector<cv::Mat> played(
-        flight.i420.begin(),
-        flight.i420.begin() + static_cast<std::ptrdiff_t>(std::min(frames_, flight.i420.size())));
-    std::vector<Clock::time_point> left;
-    left.reserve(played.size());
-    PlayThroughPipeline(played, frame_rate_hz_, settings_,
-                        [&left](GstBuffer*) { left.push_back(Clock::now()); });
-    if (left.size() != played.size()) {
-      throw std::runtime_error(std::to_string(played.size()) + " frames went into the pipeline, " +
-                               std::to_string(left.size()) + " came out");
-    }
-    for (std::size_t i = kPipelineWarmUp; i + kOnTheWay < left.size(); ++i) {
-      times_ms_.push_back(Milliseconds(left[i] - left[i - 1]));
+SpeedBenchmark::SpeedBenchmark(const SpeedBenchmarkSettings& settings,
+                               const BenchmarkProgress& progress)
+    : settings_(settings), progress_(progress) {
+  for (const SpeedSize& size : settings.sizes) {
+    const int frames = &size == &settings.sizes.front()
+                           ? std::min(size.frames, settings.centre_frames)
+                           : size.frames;
+    if (frames <= kPipelineWarmUp + kFramesOnTheWay || size.width % 2 != 0 ||
+        size.height % 2 != 0) {
+      throw std::invalid_argument("the benchmark needs even frame sizes and more than " +
+                                  std::to_string(kPipelineWarmUp + kFramesOnTheWay) + " frames");
     }
   }
-
- private:
-  PipelineSettings settings_;
-  double frame_rate_hz_;
-  std::size_t frames_;
-};
-
-std::vector<std::unique_ptr<Contestant>> MakeContestants(const SpeedBenchmarkSettings& settings,
-                                                         const std::string& opencl) {
-  std::vector<std::unique_ptr<Contestant>> contestants;
-  contestants.push_back(std::make_unique<KltContestant>());
-  struct Device {
-    const char* name;
-    const char* figure;
-    std::string selector;
-  };
-  std::vector<Device> devices = {{"CPU twin", "cpu.", "cpu"}};
-  if (!opencl.empty()) devices.push_back({"OpenCL", "opencl.", opencl});
-  for (const Device& device : devices) {
-    for (const ReferenceMode mode : {ReferenceMode::kAnchor, ReferenceMode::kCentre}) {
-      const bool anchor = mode == ReferenceMode::kAnchor;
-      const std::string text = anchor ? "anchor" : "centre";
-      const std::string suffix = (anchor ? "" : ".centre");
-      contestants.push_back(std::make_unique<RegistrationContestant>(
-          "registration " + text + ", " + device.name,
-          "registration.fps" + suffix + "." + device.figure, device.selector, mode));
-      contestants.push_back(std::make_unique<PipelineContestant>(
-          "pipeline " + text + ", " + device.name, "pipeline.fps" + suffix + "." + device.figure,
-          device.selector, text, settings.plan.frame_rate_hz,
-          static_cast<std::size_t>(anchor ? settings.plan.frames : settings.centre_frames)));
+  StartGStreamer();
+  const DeviceInfo by_default = Backend::Create()->device();
+  document_.device = by_default.Describe();
+  std::string opencl = "none";
+  for (const DeviceInfo& device : Backend::Devices()) {
+    const bool is_default = device.selector == by_default.selector;
+    if (device.kind == DeviceKind::kCpuTwin) {
+      devices_.push_back({"cpu", "cpu"});
+    } else if (opencl == "none" && (is_default || by_default.kind == DeviceKind::kCpuTwin)) {
+      devices_.push_back({"opencl", device.selector});
+      opencl = device.Describe();
+    } else {
+      continue;
     }
+    if (is_default) std::swap(devices_.front(), devices_.back());
+  }
+  if (opencl == "none") document_.left_out.emplace_back("there is no OpenCL device");
+  std::string sequences;
+  for (const std::string& sequence : settings.sequences) {
+    sequences += (sequences.empty() ? "" : ",") + sequence;
+  }
+  std::string frames;
+  for (const SpeedSize& size : settings.sizes) {
+    frames += (frames.empty() ? "" : ",") + SizeText(size) + ":" + std::to_string(size.frames);
+  }
+  document_.options = {{"sequences", sequences},
+                       {"frames", frames},
+                       {"rounds", std::to_string(settings.rounds)},
+                       {"opencl", opencl},
+                       {"plugin", PluginFile()}};
+  for (const auto& [name, value] : document_.options) progress_.say(name + ": " + value);
+}
+
+SpeedBenchmark::Contestants SpeedBenchmark::MakeContestants(const SpeedSize& size) const {
+  Contestants contestants;
+  contestants.push_back(MakeKltContestant());
+  const bool first = &size == &settings_.sizes.front();
+  for (const Device& device : devices_) {
+    contestants.push_back(MakeRegistrationContestant(device.selector, device.name));
+    // What is measured on the default device stands without its name, too.
+    const auto variants = [&](const std::string& mode) {
+      std::vector<std::string> names = {mode + device.name + "."};
+      if (&device == &devices_.front()) names.push_back(mode);
+      return names;
+    };
+    contestants.push_back(
+        MakePipelineContestant("pipeline, " + device.name, "pipeline", variants(""),
+                               {.device = device.selector, .frames = size.frames}));
+    if (!first) continue;
+    contestants.push_back(MakePipelineContestant(
+        "pipeline, centre, " + device.name, "pipeline", variants("centre."),
+        {.device = device.selector, .reference = "centre", .frames = settings_.centre_frames}));
+  }
+  if (first) {
+    contestants.push_back(MakePipelineContestant(
+        "pipeline, latency, " + devices_.front().name, "pipeline.latency", {},
+        {.device = devices_.front().selector, .frames = size.frames, .one_at_a_time = true}));
   }
   return contestants;
 }
 
-// The device that is used by default where that is an OpenCL device, else the best one; the CPU
-// twin where there is none.
-DeviceInfo OpenClDevice(const DeviceInfo& by_default) {
-  if (by_default.kind != DeviceKind::kCpuTwin) return by_default;
-  for (const DeviceInfo& device : Backend::Devices()) {
-    if (device.kind != DeviceKind::kCpuTwin) return device;
+// Of the median round, in which both were measured one after the other.
+double RatioTo(const SpeedContestant& peer, const SpeedContestant& one) {
+  std::vector<double> ratios;
+  for (std::size_t round = 0; round < one.round_fps().size(); ++round) {
+    ratios.push_back(one.round_fps()[round] / peer.round_fps()[round]);
   }
-  return by_default;
+  return Quantile(ratios, 0.5);
+}
+
+void SpeedBenchmark::AddFigures(const Contestants& contestants, const SpeedSize& size) {
+  std::vector<Figure>& figures = document_.figures;
+  const std::string text = SizeText(size);
+  for (const std::unique_ptr<SpeedContestant>& one : contestants) {
+    if (one->what() == "pipeline.latency") {
+      figures.push_back({"pipeline.p50_ms." + text, Quantile(one->times_ms(), 0.5), "ms"});
+      figures.push_back({"pipeline.p99_ms." + text, Quantile(one->times_ms(), 0.99), "ms"});
+    }
+    for (const std::string& variant : one->variants()) {
+      figures.push_back(
+          {one->what() + ".fps." + variant + text, Quantile(one->round_fps(), 0.5), "1/s"});
+      const std::string quality = "speed." + one->what() + "." + variant;
+      AddFigure(figures, quality + "rms_px." + text, one->rms_px(), "px");
+      AddFigure(figures, quality + "f1_005." + text, one->f1());
+    }
+  }
+  if (&size != &settings_.sizes.front()) return;
+  // After KLT comes registration on the default device.
+  figures.push_back(
+      {"registration.speed_ratio_to_klt", RatioTo(*contestants[0], *contestants[1]), ""});
+}
+
+void SpeedBenchmark::AddTable(const Contestants& contestants, const SpeedSize& size) {
+  FigureTable table = {
+      .name = "speed." + SizeText(size),
+      .title = SizeText(size) + ", " + std::to_string(size.frames) + " frames of each flight, " +
+               std::to_string(settings_.rounds) + " rounds",
+      .columns = {"", "frames/s", "median ms", "p95 ms", "p99 ms", "to KLT", "RMS px", "F1 %"},
+      .rows = {},
+      .digits = 3};
+  for (const std::unique_ptr<SpeedContestant>& one : contestants) {
+    const std::optional<double> f1 = one->f1();
+    table.rows.push_back({one->title(), Quantile(one->round_fps(), 0.5),
+                          Quantile(one->times_ms(), 0.5), Quantile(one->times_ms(), 0.95),
+                          Quantile(one->times_ms(), 0.99), RatioTo(*contestants.front(), *one),
+                          CellOf(one->rms_px()), f1 ? TableCell(100 * *f1) : TableCell()});
+  }
+  document_.tables.push_back(std::move(table));
+}
+
+void SpeedBenchmark::MeasureSize(const SpeedSize& size) {
+  std::vector<SpeedFlight> flights;
+  for (const std::string& sequence : settings_.sequences) {
+    flights.push_back(RenderFlight(sequence, size, settings_.threads, progress_));
+  }
+  const Contestants contestants = MakeContestants(size);
+  for (int round = 1; round <= settings_.rounds; ++round) {
+    for (const std::unique_ptr<SpeedContestant>& contestant : contestants) {
+      progress_.check();
+      progress_.say(SizeText(size) + ", round " + std::to_string(round) + ": " +
+                    contestant->title());
+      contestant->RunRound(flights);
+    }
+  }
+  AddFigures(contestants, size);
+  AddTable(contestants, size);
+}
+
+BenchmarkDocument SpeedBenchmark::Run() {
+  for (const SpeedSize& size : settings_.sizes) MeasureSize(size);
+  return document_;
 }
 
 }  // namespace
 
-SpeedBenchmarkResult RunSpeedBenchmark(const SpeedBenchmarkSettings& settings,
-                                       const std::function<void(const std::string&)>& say) {
-  if (std::min(settings.plan.frames, settings.centre_frames) < 2 * kPipelineWarmUp) {
-    throw std::invalid_argument("the benchmark needs at least " +
-                                std::to_string(2 * kPipelineWarmUp) + " frames");
-  }
-  if (settings.plan.width % 2 != 0 || settings.plan.height % 2 != 0) {
-    throw std::invalid_argument("the benchmark needs even frame sizes");
-  }
-  StartGStreamer();
-  SpeedBenchmarkResult result;
-  result.plugin_file = PluginFile();
-  const DeviceInfo by_default = Backend::Create()->device();
-  result.default_device = by_default.Describe();
-  say("rendering " + std::to_string(settings.plan.frames) + " frames");
-  const Flight flight = RenderFlight(settings);
-  const DeviceInfo opencl = OpenClDevice(by_default);
-  const bool has_opencl = opencl.kind != DeviceKind::kCpuTwin;
-  const std::vector<std::unique_ptr<Contestant>> contestants =
-      MakeContestants(settings, has_opencl ? opencl.selector : "");
-  for (int round = 1; round <= settings.rounds; ++round) {
-    for (const std::unique_ptr<Contestant>& contestant : contestants) {
-      say("round " + std::to_string(round) + ": " + contestant->Result().name);
-      contestant->RunRound(flight);
-    }
-  }
-  if (has_opencl) result.opencl_device = opencl.Describe();
-  const std::string size = std::to_string(flight.width) + "x" + std::to_string(flight.height);
-  double klt_fps = 0;
-  double default_registration_fps = 0;
-  for (const std::unique_ptr<Contestant>& contestant : contestants) {
-    const SpeedContestant one = contestant->Result();
-    result.contestants.push_back(one);
-    const std::string& figure = contestant->figure();
-    if (figure == "peer.klt.fps") {
-      klt_fps = one.fps;
-      result.figures.push_back({"peer.klt.fps." + size, one.fps, "1/s"});
-      continue;
-    }
-    result.figures.push_back({figure + size, one.fps, "1/s"});
-    // The figures of the device that is used by default stand without its name.
-    const std::string used = by_default.kind == DeviceKind::kCpuTwin ? ".cpu." : ".opencl.";
-    if (figure == "registration.fps" + used) default_registration_fps = one.fps;
-    if (figure == "pipeline.fps" + used) {
-      result.figures.push_back({"pipeline.fps." + size, one.fps, "1/s"});
-    }
-    if (figure == "pipeline.fps.centre" + used) {
-      result.figures.push_back({"pipeline.fps.centre." + size, one.fps, "1/s"});
-    }
-  }
-  result.figures.push_back(
-      {"registration.speed_ratio_to_klt", default_registration_fps / klt_fps, ""});
-  return result;
+SpeedBenchmarkSettings QuickSpeedBenchmark() {
+  return {.sequences = {"1"},
+          .sizes = {{640, 480, 80}, {1280, 720, 50}, {1920, 1080, 46}},
+          .centre_frames = 60,
+          .rounds = 2};
+}
+
+BenchmarkDocument RunSpeedBenchmark(const SpeedBenchmarkSettings& settings,
+                                    const BenchmarkProgress& progress) {
+  return SpeedBenchmark(settings, progress).Run();
 }
 
 }  // namespace windhover::replay

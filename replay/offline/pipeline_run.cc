@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 
 #include "service/gstreamer/messages.h"
@@ -50,12 +51,21 @@ GstBuffer* MakeBuffer(const cv::Mat& frame, const GstVideoInfo& info) {
   return buffer;
 }
 
-ObjectPtr<GstElement> BuildPipeline(const PipelineSettings& settings) {
+// Whoever waits in the pipeline is let go before it goes itself.
+struct StopAndUnref {
+  void operator()(GstElement* pipeline) const {
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+    gst_object_unref(pipeline);
+  }
+};
+using PipelinePtr = std::unique_ptr<GstElement, StopAndUnref>;
+
+PipelinePtr BuildPipeline(const PipelineSettings& settings) {
   const std::string text =
       "appsrc name=source format=time block=true max-buffers=4 max-bytes=0 ! " + settings.elements +
       " ! fakesink name=sink sync=false";
   GError* error = nullptr;
-  ObjectPtr<GstElement> pipeline(gst_parse_launch(text.c_str(), &error));
+  PipelinePtr pipeline(gst_parse_launch(text.c_str(), &error));
   if (error != nullptr) {
     const std::string message = error->message;
     g_error_free(error);
@@ -65,7 +75,8 @@ ObjectPtr<GstElement> BuildPipeline(const PipelineSettings& settings) {
   return pipeline;
 }
 
-void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double frame_rate_hz) {
+void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double frame_rate_hz,
+                const std::function<void(std::size_t)>& enter) {
   GstVideoInfo info;
   const cv::Mat& first = frames.front();
   if (first.channels() == 3) {
@@ -83,6 +94,7 @@ void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double f
     GstBuffer* buffer = MakeBuffer(frames[i], info);
     GST_BUFFER_PTS(buffer) = i * duration;
     GST_BUFFER_DURATION(buffer) = duration;
+    if (enter) enter(i);
     if (gst_app_src_push_buffer(GST_APP_SRC(source), buffer) != GST_FLOW_OK) return;
   }
   gst_app_src_end_of_stream(GST_APP_SRC(source));
@@ -92,26 +104,29 @@ void PushFrames(GstElement* source, const std::vector<cv::Mat>& frames, double f
 
 void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
                          const PipelineSettings& settings,
-                         const std::function<void(GstBuffer*)>& leave) {
+                         const std::function<void(GstBuffer*)>& leave,
+                         const std::function<void(std::size_t)>& enter) {
   StartGStreamer();
-  const ObjectPtr<GstElement> pipeline = BuildPipeline(settings);
+  const PipelinePtr pipeline = BuildPipeline(settings);
   const ObjectPtr<GstElement> source(gst_bin_get_by_name(GST_BIN(pipeline.get()), "source"));
   const ObjectPtr<GstElement> sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "sink"));
-  GstPad* pad = gst_element_get_static_pad(sink.get(), "sink");
+  const ObjectPtr<GstPad> pad(gst_element_get_static_pad(sink.get(), "sink"));
   gst_pad_add_probe(
-      pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
-        (*static_cast<const std::function<void(GstBuffer*)>*>(data))(
-            GST_PAD_PROBE_INFO_BUFFER(info));
+      pad.get(), GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad* at, GstPadProbeInfo* info, gpointer data) {
+        try {
+          (*static_cast<const std::function<void(GstBuffer*)>*>(data))(
+              GST_PAD_PROBE_INFO_BUFFER(info));
+        } catch (const std::exception& error) {
+          GST_ELEMENT_ERROR(GST_PAD_PARENT(at), STREAM, FAILED, ("%s", error.what()), (nullptr));
+        }
         return GST_PAD_PROBE_OK;
       },
       const_cast<std::function<void(GstBuffer*)>*>(&leave), nullptr);
-  gst_object_unref(pad);
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  PushFrames(source.get(), frames, frame_rate_hz);
+  PushFrames(source.get(), frames, frame_rate_hz, enter);
   const ObjectPtr<GstBus> bus(gst_element_get_bus(pipeline.get()));
   const std::string failure = AwaitEnd(bus.get());
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   if (!failure.empty()) throw std::runtime_error("the pipeline failed: " + failure);
 }
 

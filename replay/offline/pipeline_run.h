@@ -23,11 +23,14 @@ struct PipelineSettings {
 
 // Plays frames that lie in memory through a GStreamer pipeline as fast as it takes them, and calls
 // `leave` with each buffer that comes out, on the pipeline's own thread; returns after the last
-// one. `frames` are all BGR (CV_8UC3) or all I420 as cv::cvtColor makes it (CV_8UC1, 1.5 times the
+// one. Before a frame goes in, `enter` is called with its index, from 0, on the caller's thread.
+// `frames` are all BGR (CV_8UC3) or all I420 as cv::cvtColor makes it (CV_8UC1, 1.5 times the
 // height, even width and height). Starts GStreamer where that is not done. Throws
-// std::runtime_error where the pipeline cannot be built or fails.
+// std::runtime_error where the pipeline cannot be built or fails, or `leave` throws; and what
+// `enter` throws.
 void PlayThroughPipeline(const std::vector<cv::Mat>& frames, double frame_rate_hz,
                          const PipelineSettings& settings,
-                         const std::function<void(GstBuffer*)>& leave);
+                         const std::function<void(GstBuffer*)>& leave,
+                         const std::function<void(std::size_t)>& enter = nullptr);
 
 }  // namespace windhover::replay

@@ -80,6 +80,19 @@ TEST(PlayThroughPipeline, FailuresBecomeExceptions) {
   // Refuses the format: caps cannot be negotiated.
   EXPECT_THROW(PlayThroughPipeline(frames, 25, {"capsfilter caps=audio/x-raw", {}}, ignore),
                std::runtime_error);
+  const auto refuse = [](auto) { throw std::runtime_error("no"); };
+  EXPECT_THROW(PlayThroughPipeline(frames, 25, {"identity", {}}, refuse), std::runtime_error);
+  EXPECT_THROW(PlayThroughPipeline(frames, 25, {"identity", {}}, ignore, refuse),
+               std::runtime_error);
+}
+
+TEST(PlayThroughPipeline, SaysWhenAFrameEnters) {
+  const std::vector<cv::Mat> frames(5, cv::Mat(24, 16, CV_8UC3, cv::Scalar::all(9)));
+  std::vector<std::size_t> entered;
+  PlayThroughPipeline(
+      frames, 25, {"identity", {}}, [](GstBuffer*) {},
+      [&](std::size_t frame) { entered.push_back(frame); });
+  EXPECT_EQ(entered, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
 // A picture of blocks that is shifted from frame to frame, under a dot with a way of its own.

@@ -42,7 +42,14 @@ MAY_INCLUDE = {
 BELONGS_TO = {
     "CL/": ("gpu-kernels/opencl/",),
     "fftw3.h": ("gpu-kernels/", "tests/gpu-kernels/"),
-    "gst/": ("service/gstreamer/", "service/app/", "gst-plugins/", "replay/offline/", "tests/"),
+    "gst/": (
+        "service/gstreamer/",
+        "service/app/",
+        "gst-plugins/",
+        "replay/offline/",
+        "replay/render/",
+        "tests/",
+    ),
     "dds/": ("service/dds/", "tests/"),
     "idl/": ("service/dds/", "tests/"),
     "CLI/": ("service/app/", "replay/", "tests/"),

@@ -99,8 +99,8 @@ void TimeLayouts(const std::shared_ptr<Backend>& backend,
       }
     }
   }
-  if (backends.size() < 2) left_out.push_back("figure 2.7: there is no OpenCL device");
-  left_out.push_back("figure 2.7 without padding: tiles' sides are powers of two always");
+  if (backends.size() < 2) left_out.emplace_back("figure 2.7: there is no OpenCL device");
+  left_out.emplace_back("figure 2.7 without padding: tiles' sides are powers of two always");
 }
 
 }  // namespace windhover::replay

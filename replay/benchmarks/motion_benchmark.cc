@@ -57,13 +57,27 @@ struct PeerRun {
   }
 };
 
+// As many as there are contestants after the product's two modes, then those of figure 6.7.
+std::vector<PeerRun> MakePeers() {
+  std::vector<PeerRun> peers;
+  peers.emplace_back(std::make_unique<FrameDifferencing>(BackgroundOptions(), MotionOptions()));
+  peers.emplace_back(std::make_unique<StabilizedMog2>(MotionOptions()));
+  for (const int threshold : kCurveThresholds) {
+    BackgroundOptions background;
+    background.threshold = threshold;
+    MotionOptions motion;
+    motion.min_area_px = 1;
+    peers.emplace_back(std::make_unique<FrameDifferencing>(background, motion));
+  }
+  return peers;
+}
+
 class MotionBenchmark {
  public:
   MotionBenchmark(const MotionBenchmarkSettings& settings, const BenchmarkProgress& progress);
   BenchmarkDocument Run();
 
  private:
-  std::vector<PeerRun> MakePeers() const;
   std::vector<FrameOutcome> Detect(const std::filesystem::path& source, const std::string& what,
                                    const std::string& reference);
   void MeasureSequence(const DatasetSequence& sequence);
@@ -87,21 +101,6 @@ MotionBenchmark::MotionBenchmark(const MotionBenchmarkSettings& settings,
                           {"motion.centre.", "centre", {}},
                           {"motion.frame_differencing.", "FD", {}},
                           {"peer.mog2.", "MOG2", {}}};
-}
-
-// As many as there are contestants after the product's two modes, then those of figure 6.7.
-std::vector<PeerRun> MotionBenchmark::MakePeers() const {
-  std::vector<PeerRun> peers;
-  peers.emplace_back(std::make_unique<FrameDifferencing>(BackgroundOptions(), MotionOptions()));
-  peers.emplace_back(std::make_unique<StabilizedMog2>(MotionOptions()));
-  for (const int threshold : kCurveThresholds) {
-    BackgroundOptions background;
-    background.threshold = threshold;
-    MotionOptions motion;
-    motion.min_area_px = 1;
-    peers.emplace_back(std::make_unique<FrameDifferencing>(background, motion));
-  }
-  return peers;
 }
 
 void MotionBenchmark::AddCurve(const std::string& id, const std::vector<LabelledBox>& truth,

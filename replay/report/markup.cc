@@ -20,8 +20,8 @@ std::string Escaped(std::string_view text) {
       case '>':
         escaped += "&gt;";
         break;
-      case '"':
-        escaped += "&quot;";
+      case '\'':
+        escaped += "&#39;";
         break;
       default:
         escaped += c;

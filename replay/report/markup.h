@@ -6,7 +6,7 @@
 
 namespace windhover::replay {
 
-// For text and attributes of HTML and SVG.
+// For text of HTML and SVG, and for attributes in single quotes, as this folder has them.
 std::string Escaped(std::string_view text);
 
 // A length or place in a drawing: two digits after the point at most, in the C locale.

@@ -42,20 +42,20 @@ std::string OptionOf(const BenchmarkDocument& document, const std::string& name)
 
 std::string RunsHtml(const std::vector<MeasuredDocument>& documents) {
   std::string html =
-      "<div class=\"table\"><table id=\"runs\"><caption>Runs</caption><thead><tr>"
-      "<th class=\"text\">benchmark</th><th class=\"text\">machine</th><th>cores</th>"
-      "<th>memory GiB</th><th class=\"text\">device</th><th class=\"text\">dataset SHA-256</th>"
-      "<th>frames</th><th class=\"text\">file</th></tr></thead><tbody>\n";
+      "<div class='table'><table id='runs'><caption>Runs</caption><thead><tr>"
+      "<th class='text'>benchmark</th><th class='text'>machine</th><th>cores</th>"
+      "<th>memory GiB</th><th class='text'>device</th><th class='text'>dataset SHA-256</th>"
+      "<th>frames</th><th class='text'>file</th></tr></thead><tbody>\n";
   for (const MeasuredDocument& one : documents) {
     const std::string& sum = one.content.dataset_sha256;
-    html += "<tr>" + Text("td class=\"text\"", SubjectOf(one.content)) +
-            Text("td class=\"text\"", one.machine.processor) +
+    html += "<tr>" + Text("td class='text'", SubjectOf(one.content)) +
+            Text("td class='text'", one.machine.processor) +
             Text("td", std::to_string(one.machine.cores)) +
             Text("td", CellText(one.machine.memory_gib, 1)) +
-            Text("td class=\"text\"", one.content.device) + "<td class=\"text\"><code title=\"" +
-            Escaped(sum) + "\">" + (sum.empty() ? "-" : Escaped(sum.substr(0, 12)) + "…") +
+            Text("td class='text'", one.content.device) + "<td class='text'><code title='" +
+            Escaped(sum) + "'>" + (sum.empty() ? "-" : Escaped(sum.substr(0, 12)) + "…") +
             "</code></td>" + Text("td", OptionOf(one.content, "frames")) +
-            Text("td class=\"text\"", one.file.filename().string()) + "</tr>\n";
+            Text("td class='text'", one.file.filename().string()) + "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
 }
@@ -81,12 +81,12 @@ std::optional<double> NumberOf(const TableCell& cell) {
 // `best` is nothing where no number stands out.
 std::string CellHtml(const TableCell& cell, int digits, bool text_column,
                      std::optional<double> best) {
-  if (std::holds_alternative<std::monostate>(cell)) return "<td class=\"none\">–</td>";
+  if (std::holds_alternative<std::monostate>(cell)) return "<td class='none'>–</td>";
   const std::string text = Escaped(CellText(cell, digits));
   const std::optional<double> value = NumberOf(cell);
-  if (!value) return (text_column ? "<td class=\"text\">" : "<td>") + text + "</td>";
-  return std::string(value == best ? "<td class=\"best\">" : "<td>") + "<data value=\"" +
-         NumberText(*value, kAllDigits) + "\">" + text + "</data></td>";
+  if (!value) return (text_column ? "<td class='text'>" : "<td>") + text + "</td>";
+  return std::string(value == best ? "<td class='best'>" : "<td>") + "<data value='" +
+         NumberText(*value, kAllDigits) + "'>" + text + "</data></td>";
 }
 
 // Nothing where the row has but one number.
@@ -102,16 +102,15 @@ std::optional<double> LeastOf(const std::vector<TableCell>& row) {
 std::string TableHtml(const FigureTable& table) {
   const std::vector<bool> texts = TextColumns(table);
   std::string html =
-      table.columns.size() >= kWideColumns ? "<div class=\"table wide\">" : "<div class=\"table\">";
-  html +=
-      "<table id=\"" + Escaped(table.name) + "\">" + Text("caption", table.title) + "<thead><tr>";
+      table.columns.size() >= kWideColumns ? "<div class='table wide'>" : "<div class='table'>";
+  html += "<table id='" + Escaped(table.name) + "'>" + Text("caption", table.title) + "<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    html += Text(texts[i] ? "th class=\"text\"" : "th", table.columns[i]);
+    html += Text(texts[i] ? "th class='text'" : "th", table.columns[i]);
   }
   html += "</tr></thead><tbody>\n";
   for (const std::vector<TableCell>& row : table.rows) {
     const bool thesis = std::find(row.begin(), row.end(), TableCell("thesis")) != row.end();
-    html += thesis ? "<tr class=\"thesis\">" : "<tr>";
+    html += thesis ? "<tr class='thesis'>" : "<tr>";
     const std::optional<double> best = table.least_is_best ? LeastOf(row) : std::nullopt;
     for (std::size_t i = 0; i < row.size(); ++i) {
       html += CellHtml(row[i], table.digits, texts[i], best);
@@ -124,7 +123,7 @@ std::string TableHtml(const FigureTable& table) {
 std::string PairsHtml(const std::string& title,
                       const std::vector<std::pair<std::string, std::string>>& pairs) {
   if (pairs.empty()) return "";
-  std::string html = Text("h3", title) + "\n<div class=\"columns\">";
+  std::string html = Text("h3", title) + "\n<div class='columns'>";
   for (const auto& [name, value] : pairs) {
     html += "<div>" + Text("span", name) + Text("span", value) + "</div>\n";
   }
@@ -142,7 +141,7 @@ std::string FiguresHtml(const std::vector<Figure>& figures) {
 
 std::string LeftOutHtml(const std::vector<std::string>& lines) {
   if (lines.empty()) return "";
-  std::string html = "<h3>Left out</h3>\n<ul class=\"soft\">";
+  std::string html = "<h3>Left out</h3>\n<ul class='soft'>";
   for (const std::string& line : lines) html += Text("li", line) + "\n";
   return html + "</ul>\n";
 }
@@ -162,7 +161,7 @@ std::string DocumentHtml(const MeasuredDocument& document, const std::string& id
   std::set<std::string> names;
   for (const FigureTable& table : content.tables) names.insert(table.name);
   for (const FigurePlot& plot : content.plots) {
-    if (!names.count(plot.name)) html += PlotHtml(plot, styles);
+    if (!names.contains(plot.name)) html += PlotHtml(plot, styles);
   }
   for (const FigureTable& table : content.tables) {
     html += plots_called(table.name) + TableHtml(table);
@@ -176,8 +175,8 @@ std::string DocumentHtml(const MeasuredDocument& document, const std::string& id
 
 std::string PageHtml(const std::vector<MeasuredDocument>& documents) {
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
+      "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'/>"
+      "<meta name='viewport' content='width=device-width, initial-scale=1'/>"
       "<title>Windhover benchmarks</title><style>";
   html += kPageStyle;
   html +=

@@ -67,10 +67,11 @@ void PlotScale::MakeLogarithmic() {
   low_ = RoundNumber(low_, false);
   high_ = std::max(RoundNumber(high_, true), 2 * low_);
   const bool decades_only = std::log10(high_ / low_) > 3;
-  for (double decade = std::pow(10, std::floor(std::log10(low_) + 1e-9)); decade <= high_ * 1.0001;
-       decade *= 10) {
+  const int last = static_cast<int>(std::floor(std::log10(high_) + 1e-9));
+  for (int decade = static_cast<int>(std::floor(std::log10(low_) + 1e-9)); decade <= last;
+       ++decade) {
     for (const double round : {1.0, 2.0, 5.0}) {
-      const double value = decade * round;
+      const double value = round * std::pow(10, decade);
       if (value < low_ * 0.9999 || value > high_ * 1.0001) continue;
       ticks_.push_back({At(value), decades_only && round != 1 ? "" : Label(value)});
     }

@@ -26,14 +26,14 @@ constexpr PanelShape kAlone = {1120, 440, 66, 14, 24, 56};
 constexpr PanelShape kOneOfMany = {224, 210, 40, 11, 22, 40};
 
 std::string Line(double x1, double y1, double x2, double y2, const char* look) {
-  return "<line class=\"" + std::string(look) + "\" x1=\"" + Px(x1) + "\" y1=\"" + Px(y1) +
-         "\" x2=\"" + Px(x2) + "\" y2=\"" + Px(y2) + "\"/>";
+  return "<line class='" + std::string(look) + "' x1='" + Px(x1) + "' y1='" + Px(y1) + "' x2='" +
+         Px(x2) + "' y2='" + Px(y2) + "'/>";
 }
 
 std::string Text(double x, double y, const char* look, const std::string& text,
                  const std::string& more = "") {
-  return "<text class=\"" + std::string(look) + "\" x=\"" + Px(x) + "\" y=\"" + Px(y) + "\"" +
-         more + ">" + Escaped(text) + "</text>";
+  return "<text class='" + std::string(look) + "' x='" + Px(x) + "' y='" + Px(y) + "'" + more +
+         ">" + Escaped(text) + "</text>";
 }
 
 class PanelDrawing {
@@ -106,7 +106,7 @@ void PanelDrawing::DrawAxes(bool with_x_label, bool with_y_label) {
     const double x = 10;
     const double y = (shape_.top + bottom) / 2;
     svg_ += Text(x, y, "label middle", plot_.y.label,
-                 " transform=\"rotate(-90 " + Px(x) + " " + Px(y) + ")\"");
+                 " transform='rotate(-90 " + Px(x) + " " + Px(y) + ")'");
   }
 }
 
@@ -125,18 +125,18 @@ void PanelDrawing::DrawSeries(const PlotSeries& series, double offset) {
     }
     markers += style.Marker(x, y, series.line ? kOnCurve : 1);
   }
-  svg_ += "<g stroke=\"" + style.colour + "\" stroke-width=\"0\">";
+  svg_ += "<g stroke='" + style.colour + "' stroke-width='0'>";
   if (series.line && !line.empty()) {
     line.pop_back();
-    svg_ += "<polyline class=\"curve\" points=\"" + line + "\"/>";
+    svg_ += "<polyline class='curve' points='" + line + "'/>";
   }
   svg_ += markers + "</g>";
 }
 
 std::string PanelDrawing::Draw(const FigurePlot::Panel& panel, bool with_x_label,
                                bool with_y_label) {
-  svg_ = "<svg viewBox=\"0 0 " + Px(shape_.width) + " " + Px(shape_.height) +
-         "\" role=\"img\" aria-label=\"" + Escaped(plot_.title + " " + panel.title) + "\">";
+  svg_ = "<svg viewBox='0 0 " + Px(shape_.width) + " " + Px(shape_.height) +
+         "' role='img' aria-label='" + Escaped(plot_.title + " " + panel.title) + "'>";
   DrawAxes(with_x_label, with_y_label);
   if (!panel.title.empty()) {
     svg_ += Text(shape_.left + 2, shape_.top - 8, "panel-title", panel.title);
@@ -156,16 +156,16 @@ std::string PanelDrawing::Draw(const FigurePlot::Panel& panel, bool with_x_label
 
 std::string LegendHtml(const FigurePlot& plot, SeriesStyles& styles) {
   std::vector<std::string> names;
-  std::string html = "<div class=\"legend\">";
+  std::string html = "<div class='legend'>";
   for (const FigurePlot::Panel& panel : plot.panels) {
     for (const PlotSeries& series : panel.series) {
       if (std::find(names.begin(), names.end(), series.name) != names.end()) continue;
       names.push_back(series.name);
       const SeriesStyle& style = styles.For(series.name);
-      html += "<span><svg class=\"key\" viewBox=\"0 0 26 14\">";
+      html += "<span><svg class='key' viewBox='0 0 26 14'>";
       if (series.line) {
-        html += "<line x1=\"0\" y1=\"7\" x2=\"26\" y2=\"7\" stroke=\"" + style.colour +
-                "\" stroke-width=\"1.6\"/>";
+        html +=
+            "<line x1='0' y1='7' x2='26' y2='7' stroke='" + style.colour + "' stroke-width='1.6'/>";
       }
       html += style.Marker(13, 7, series.line ? kOnCurve : 1) + "</svg>" + Escaped(series.name) +
               "</span>";
@@ -180,9 +180,9 @@ std::string PlotHtml(const FigurePlot& plot, SeriesStyles& styles) {
   const std::size_t count = plot.panels.size();
   const bool many = count > 1;
   PanelDrawing drawing(plot, many ? kOneOfMany : kAlone, styles);
-  std::string html = "<figure class=\"plot\" id=\"plot-" + Escaped(plot.name) + "\"><figcaption>" +
+  std::string html = "<figure class='plot' id='plot-" + Escaped(plot.name) + "'><figcaption>" +
                      Escaped(plot.title) + "</figcaption>" + LegendHtml(plot, styles) +
-                     "<div class=\"" + (many ? "panels" : "panel") + "\">";
+                     "<div class='" + (many ? "panels" : "panel") + "'>";
   for (std::size_t i = 0; i < count; ++i) {
     html += drawing.Draw(plot.panels[i], i + kColumns >= count, i % kColumns == 0);
   }

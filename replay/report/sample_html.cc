@@ -37,15 +37,15 @@ const char* Plural(Kind kind) {
 
 // One pixel outside the box, so that a small object stays visible.
 std::string MarkSvg(const Box& box, Kind kind) {
-  const std::string place = "\" x=\"" + Px(box.x - 1) + "\" y=\"" + Px(box.y - 1) + "\" width=\"" +
-                            Px(box.width + 2) + "\" height=\"" + Px(box.height + 2) + "\"/>";
-  return "<rect class=\"casing" + place + "<rect class=\"mark " + ClassOf(kind) + place;
+  const std::string place = "' x='" + Px(box.x - 1) + "' y='" + Px(box.y - 1) + "' width='" +
+                            Px(box.width + 2) + "' height='" + Px(box.height + 2) + "'/>";
+  return "<rect class='casing" + place + "<rect class='mark " + ClassOf(kind) + place;
 }
 
 std::string LegendHtml() {
-  std::string html = "<div class=\"legend\">";
+  std::string html = "<div class='legend'>";
   for (const Kind kind : kKinds) {
-    html += "<span><svg class=\"key\" viewBox=\"0 0 26 14\">" + MarkSvg({4, 3, 18, 8}, kind) +
+    html += "<span><svg class='key' viewBox='0 0 26 14'>" + MarkSvg({4, 3, 18, 8}, kind) +
             "</svg>" + NameOf(kind) + "</span>";
   }
   return html + "</div>\n";
@@ -65,17 +65,22 @@ std::string CountText(const SampleFrame::View& view) {
 
 std::string SampleHtml(const SampleFrame& sample, const std::string& picture) {
   std::string html = "<figure><figcaption>Sequence " + Escaped(sample.sequence) + ", frame " +
-                     std::to_string(sample.frame) + "</figcaption><div class=\"views\">";
+                     std::to_string(sample.frame) + "</figcaption><div class='views'>";
   for (const SampleFrame::View& view : sample.views) {
     const std::string width = std::to_string(sample.width);
     const std::string height = std::to_string(sample.height);
-    html += "<div><p>" + Escaped(CountText(view)) + "</p><svg viewBox=\"-0.5 -0.5 " + width + " " +
-            height + "\" role=\"img\" aria-label=\"" + Escaped(CountText(view)) + "\">";
-    html += &view == &sample.views.front()
-                ? "<image id=\"" + picture + "\" x=\"-0.5\" y=\"-0.5\" width=\"" + width +
-                      "\" height=\"" + height + "\" href=\"data:image/jpeg;base64," +
-                      Escaped(sample.jpeg_base64) + "\"/>"
-                : "<use href=\"#" + picture + "\"/>";
+    const std::string counts = Escaped(CountText(view));
+    html.append("<div><p>").append(counts).append("</p><svg viewBox='-0.5 -0.5 ");
+    html.append(width).append(" ").append(height).append("' role='img' aria-label='");
+    html.append(counts).append("'>");
+    if (&view == &sample.views.front()) {
+      html.append("<image id='").append(picture).append("' x='-0.5' y='-0.5' width='");
+      html.append(width).append("' height='").append(height);
+      html.append("' href='data:image/jpeg;base64,").append(Escaped(sample.jpeg_base64));
+      html.append("'/>");
+    } else {
+      html.append("<use href='#").append(picture).append("'/>");
+    }
     for (const SampleFrame::Mark& mark : view.marks) html += MarkSvg(mark.box, mark.kind);
     html += "</svg></div>";
   }

@@ -26,26 +26,26 @@ std::string Points(double x, double y, std::initializer_list<std::pair<double, d
 std::string SeriesStyle::Marker(double x, double y, double size) const {
   const double r = size * (main ? 5.5 : 4.2);
   const bool stroked = shape == 4 || shape == 5;
-  const std::string paint =
-      stroked || hollow ? "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.8\"/>"
-                        : "\" fill=\"" + colour + "\"/>";
+  const std::string paint = stroked || hollow
+                                ? "' fill='none' stroke='" + colour + "' stroke-width='1.8'/>"
+                                : "' fill='" + colour + "'/>";
   switch (shape) {
     case 0:
-      return "<circle cx=\"" + Px(x) + "\" cy=\"" + Px(y) + "\" r=\"" + Px(r) + paint;
+      return "<circle cx='" + Px(x) + "' cy='" + Px(y) + "' r='" + Px(r) + paint;
     case 1:
-      return "<rect x=\"" + Px(x - 0.9 * r) + "\" y=\"" + Px(y - 0.9 * r) + "\" width=\"" +
-             Px(1.8 * r) + "\" height=\"" + Px(1.8 * r) + paint;
+      return "<rect x='" + Px(x - 0.9 * r) + "' y='" + Px(y - 0.9 * r) + "' width='" + Px(1.8 * r) +
+             "' height='" + Px(1.8 * r) + paint;
     case 2:
-      return "<polygon points=\"" +
+      return "<polygon points='" +
              Points(x, y, {{0, -1.15 * r}, {1.1 * r, 0.85 * r}, {-1.1 * r, 0.85 * r}}) + paint;
     case 3:
-      return "<polygon points=\"" +
+      return "<polygon points='" +
              Points(x, y, {{0, -1.25 * r}, {1.25 * r, 0}, {0, 1.25 * r}, {-1.25 * r, 0}}) + paint;
     case 4:
-      return "<path d=\"M" + Points(x, y, {{-r, -r}, {r, r}}) + "M" +
+      return "<path d='M" + Points(x, y, {{-r, -r}, {r, r}}) + "M" +
              Points(x, y, {{-r, r}, {r, -r}}) + paint;
     default:
-      return "<path d=\"M" + Points(x, y, {{-1.2 * r, 0}, {1.2 * r, 0}}) + "M" +
+      return "<path d='M" + Points(x, y, {{-1.2 * r, 0}, {1.2 * r, 0}}) + "M" +
              Points(x, y, {{0, -1.2 * r}, {0, 1.2 * r}}) + paint;
   }
 }

@@ -58,7 +58,7 @@ struct ExposureStep {
 
 struct SensorPlan {
   double exposure_share = 0.3;  // of the time between two frames
-  double psf_sigma_px = 0.45;   // optics, beside the pixel's own square
+  double psf_sigma_px = 0.75;   // optics and the coding of colours, beside the pixel's own square
   double vignetting = 0.0;      // share of the light that the corners lose
   double gain = 1.0;            // grey levels: gain * light + bias, until the first step
   double bias = 0.0;

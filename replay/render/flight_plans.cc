@@ -13,6 +13,7 @@ FlightPlan Outskirts() {
   plan.name = "outskirts";
   plan.frames = 420;
   plan.traffic_density = 0.3;
+  plan.sensor = {.gain = 0.85, .bias = 16};
   return plan;
 }
 

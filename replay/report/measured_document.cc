@@ -108,6 +108,10 @@ SampleFrame ReadSample(const Json& json) {
 }
 
 MeasuredDocument Read(const std::filesystem::path& file, const Json& json) {
+  if (!json.is_object()) {
+    throw std::runtime_error(std::string("is no object as 'bench --json' writes it, but of type ") +
+                             json.type_name());
+  }
   MeasuredDocument document = {file, {}, {}};
   const Json& machine = json.at("machine");
   document.machine = {machine.at("processor"), machine.at("cores"), machine.at("memory_gib")};

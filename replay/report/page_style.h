@@ -22,7 +22,8 @@ caption { white-space: nowrap; caption-side: top; text-align: left; font-weight:
 th, td { padding: 4px 11px; text-align: right; vertical-align: baseline; }
 th { font-weight: 600; vertical-align: bottom; }
 thead th { border-bottom: 1px solid var(--ink); }
-#runs td { white-space: nowrap; }
+#runs td:nth-child(7) { overflow-wrap: anywhere; }
+#runs td:nth-child(2), #runs td:nth-child(8) { white-space: nowrap; }
 th.text, td.text { text-align: left; }
 tbody tr:nth-child(even) { background: var(--band); }
 td.none { color: #9aa3ad; }

@@ -236,7 +236,7 @@ TEST_F(Report, LeavesOutWhatADocumentDoesNotHave) {
 TEST_F(Report, ErrorsNameTheFileAndWhatIsWrong) {
   EXPECT_THAT(ReadComplaint(""), AllOf(HasSubstr("bench.json: "), HasSubstr("parse error")));
   EXPECT_THAT(ReadComplaint("{\n\"machine\": {,"), HasSubstr("line 2"));
-  EXPECT_THAT(ReadComplaint("[]"), HasSubstr("array"));
+  EXPECT_THAT(ReadComplaint("[]"), HasSubstr("is no object"));
   EXPECT_THAT(ReadComplaint("{}"), HasSubstr("'machine'"));
   const nlohmann::json good = nlohmann::json::parse(JsonText(HandMade()));
   const auto with = [&](const char* place, const nlohmann::json& value) {

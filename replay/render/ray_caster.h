@@ -39,7 +39,7 @@ class RayCaster {
   // Where the direction, which goes down, meets height 0: for places where nothing is higher.
   Hit Ground(const Eigen::Vector3d& direction) const;
 
-  // The rays between four, all from the same origin; the first two corners span one side.
+  // All rays between four, which are its corners.
   using Beam = std::array<Eigen::Vector3d, 4>;
   // How far from `begin` on, and at most to `end`, no ray of a beam can meet anything.
   struct FreeWay {

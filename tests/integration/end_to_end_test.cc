@@ -55,15 +55,13 @@ struct Outcome {
   std::vector<LabelledBox> boxes;
 };
 
-Outcome RunElements(const std::string& reference, std::size_t frames) {
+Outcome RunElements(const std::string& reference) {
   const Flight& flight = TheFlight();
   Outcome outcome;
   std::vector<Detection> detections;
   const PipelineSettings settings = {"whregister ! queue ! whbackground ! queue ! whmotion",
                                      {{"reference", reference}}};
-  const std::vector<cv::Mat> played(flight.bgr.begin(),
-                                    flight.bgr.begin() + static_cast<std::ptrdiff_t>(frames));
-  PlayThroughPipeline(played, flight.plan.frame_rate_hz, settings, [&](GstBuffer* buffer) {
+  PlayThroughPipeline(flight.bgr, flight.plan.frame_rate_hz, settings, [&](GstBuffer* buffer) {
     outcome.pts.push_back(GST_BUFFER_PTS(buffer));
     const GstWindhoverHomographyMeta* meta = gst_buffer_get_windhover_homography_meta(buffer);
     if (meta != nullptr) outcome.registrations.push_back(meta->registration);
@@ -77,7 +75,8 @@ Outcome RunElements(const std::string& reference, std::size_t frames) {
   return outcome;
 }
 
-void ExpectEveryFrameOnceInOrder(const Outcome& outcome, std::size_t frames) {
+void ExpectEveryFrameOnceInOrder(const Outcome& outcome) {
+  const std::size_t frames = TheFlight().bgr.size();
   ASSERT_EQ(outcome.pts.size(), frames);
   ASSERT_EQ(outcome.registrations.size(), frames);
   for (std::size_t i = 0; i < frames; ++i) {
@@ -115,17 +114,15 @@ void ExpectMoversFound(const Outcome& outcome) {
 }
 
 TEST(EndToEnd, AnchorModeFindsTheMoversOfTheFlight) {
-  const std::size_t frames = TheFlight().bgr.size();
-  const Outcome outcome = RunElements("anchor", frames);
-  ExpectEveryFrameOnceInOrder(outcome, frames);
+  const Outcome outcome = RunElements("anchor");
+  ExpectEveryFrameOnceInOrder(outcome);
   ExpectExactRegistration(outcome);
   ExpectMoversFound(outcome);
 }
 
 TEST(EndToEnd, CentreModeFindsTheMoversOfTheFlight) {
-  const std::size_t frames = TheFlight().bgr.size();
-  const Outcome outcome = RunElements("centre", frames);
-  ExpectEveryFrameOnceInOrder(outcome, frames);
+  const Outcome outcome = RunElements("centre");
+  ExpectEveryFrameOnceInOrder(outcome);
   ExpectExactRegistration(outcome);
   ExpectMoversFound(outcome);
 }

@@ -68,6 +68,15 @@ VehicleLook RandomPerson(Random& random) {
           random.Uniform(1.6, 1.9)};
 }
 
+VehicleLook WithContrast(VehicleLook look, double contrast) {
+  constexpr float kAsphalt = 105;
+  for (float& channel : look.paint) {
+    channel =
+        std::clamp(kAsphalt + static_cast<float>(contrast) * (channel - kAsphalt), 8.0F, 247.0F);
+  }
+  return look;
+}
+
 VehicleLook ThermalLook(VehicleLook look, double warm, Random& random) {
   double level = random.Uniform(88, 110);
   double glass = level - 8;
@@ -122,7 +131,9 @@ float Scene::GroundAt(float x, float y) const {
                          static_cast<float>(relief.ripple_m) * (1 + ripple));
 }
 
-Scene BuildScene(const FlightPlan& plan) {
+namespace {
+
+Scene BuildByKind(const FlightPlan& plan) {
   switch (plan.scene) {
     case SceneKind::kOutskirts:
       return BuildOutskirts(plan);
@@ -149,6 +160,17 @@ Scene BuildScene(const FlightPlan& plan) {
     default:
       throw std::invalid_argument("no builder for the scene of " + plan.name);
   }
+}
+
+}  // namespace
+
+Scene BuildScene(const FlightPlan& plan) {
+  Scene scene = BuildByKind(plan);
+  scene.traffic_contrast = plan.traffic_contrast;
+  for (ParkedVehicle& parked : scene.parked) {
+    parked.look = WithContrast(parked.look, plan.traffic_contrast);
+  }
+  return scene;
 }
 
 }  // namespace windhover::replay

@@ -161,7 +161,7 @@ struct VehicleLook {
   double length = 4.4;  // m
   double width = 1.85;
   double height = 1.45;
-  Colour glass = {62, 56, 50};
+  Colour glass = {108, 100, 92};
 };
 
 // A vehicle that never moves.
@@ -198,6 +198,7 @@ struct Scene {
   std::vector<ParkedVehicle> parked;
   std::vector<Lane> lanes;
   std::vector<Walk> walks;
+  double traffic_contrast = 1.0;  // of the plan
   // Seen by its warmth: colours are grey levels of a thermal camera.
   bool thermal = false;
 
@@ -236,6 +237,8 @@ class Random;
 VehicleLook RandomVehicle(Random& random);
 // A person in summer clothes; one in four hardly differs from asphalt.
 VehicleLook RandomPerson(Random& random);
+// Its colours `contrast` times as far from asphalt, within 8 to 247 grey levels.
+VehicleLook WithContrast(VehicleLook look, double contrast);
 // As a thermal camera sees it, `warm` with that probability: brighter than the ground, or darker
 // where its skin mirrors the cold sky; else hardly different from the ground.
 VehicleLook ThermalLook(VehicleLook look, double warm, Random& random);

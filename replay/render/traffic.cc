@@ -24,6 +24,7 @@ Traffic::Traffic(const Scene& scene, double density, int frames, double frame_ra
     vehicles_[i].look = ThermalLook(vehicles_[i].look, 0.85, random);
   }
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    vehicles_[i].look = WithContrast(vehicles_[i].look, scene.traffic_contrast);
     vehicles_[i].id = static_cast<std::int64_t>(i) + 1;
   }
 }

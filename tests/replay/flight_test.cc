@@ -348,6 +348,32 @@ TEST(Traffic, DensityIsANumberOfVehicles) {
   EXPECT_NEAR(count(0.5) / count(1), 0.5, 0.12);
 }
 
+TEST(Traffic, ContrastIsTheDistanceOfColoursFromAsphalt) {
+  FlightPlan plan = FindFlightPlan("flight");
+  const auto looks = [&plan](double contrast) {
+    plan.traffic_contrast = contrast;
+    const Scene scene = BuildScene(plan);
+    std::vector<VehicleLook> all;
+    for (const ParkedVehicle& parked : scene.parked) all.push_back(parked.look);
+    const Traffic traffic(scene, 1, 10, 25);
+    for (const Traffic::Vehicle& vehicle : traffic.vehicles()) all.push_back(vehicle.look);
+    return all;
+  };
+  const std::vector<VehicleLook> plain = looks(1);
+  const std::vector<VehicleLook> weak = looks(0.5);
+  const std::vector<VehicleLook> strong = looks(3);
+  ASSERT_GT(plain.size(), 50U);
+  ASSERT_EQ(plain.size(), weak.size());
+  ASSERT_EQ(plain.size(), strong.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(2 * (weak[i].paint[channel] - 105), plain[i].paint[channel] - 105, 1e-3);
+      EXPECT_NEAR(strong[i].paint[channel],
+                  std::clamp(105 + 3 * (plain[i].paint[channel] - 105), 8.0F, 247.0F), 1e-3);
+    }
+  }
+}
+
 TEST(Traffic, VehiclesOnABridgeDoNotBrakeForThoseBelow) {
   Scene scene;
   scene.seed = 5;

@@ -26,6 +26,8 @@ FlightPlan Towers() {
   plan.width = 720;
   plan.height = 576;
   plan.frames = 380;
+  plan.seed = 3;
+  plan.frame_rate_hz = 12;
   plan.camera = {.altitude_m = 190,
                  .nominal_width_px = 720,
                  .pixel_m = 0.275,
@@ -34,7 +36,9 @@ FlightPlan Towers() {
                  .tilt_deg = 8,
                  .sway_m = 4,
                  .climb_m = 5};
-  plan.sensor = {.exposure_share = 0.7, .read_sigma = 2.0};
+  plan.sensor = {
+      .exposure_share = 0.7, .psf_sigma_px = 0.95, .gain = 0.45, .bias = 58, .read_sigma = 2.0};
+  plan.traffic_contrast = 3.2;
   return plan;
 }
 
@@ -45,6 +49,7 @@ FlightPlan Streets() {
   plan.scene = SceneKind::kStreets;
   plan.traffic_density = 0.16;
   plan.frames = 400;
+  plan.frame_rate_hz = 15;
   plan.camera = {.altitude_m = 230,
                  .pixel_m = 0.44,
                  .speed_m = 1.7,
@@ -52,7 +57,8 @@ FlightPlan Streets() {
                  .tilt_deg = 5,
                  .sway_m = 6,
                  .climb_m = 6};
-  plan.sensor = {.read_sigma = 2.2};
+  plan.sensor = {.gain = 0.8, .bias = 20, .read_sigma = 2.2};
+  plan.traffic_contrast = 1.7;
   return plan;
 }
 
@@ -72,7 +78,7 @@ FlightPlan Country() {
                  .sway_m = 2,
                  .climb_m = 1.5,
                  .attitude_wobble_deg = 0.3};
-  plan.sensor = {.read_sigma = 2.2};
+  plan.sensor = {.psf_sigma_px = 0.5, .read_sigma = 2.2};
   return plan;
 }
 
@@ -92,7 +98,12 @@ FlightPlan Dunes() {
                  .sway_m = 6,
                  .climb_m = 6,
                  .attitude_wobble_deg = 0.2};
-  plan.sensor = {.vignetting = 0.12, .gain = 0.8, .bias = 22, .read_sigma = 3.2, .shot_gain = 0.04};
+  plan.sensor = {.psf_sigma_px = 0.4,
+                 .vignetting = 0.12,
+                 .gain = 1.0,
+                 .bias = 0,
+                 .read_sigma = 3.2,
+                 .shot_gain = 0.04};
   plan.traffic_density = 0.8;
   return plan;
 }
@@ -106,6 +117,7 @@ FlightPlan Square() {
   plan.width = 720;
   plan.height = 576;
   plan.frames = 500;
+  plan.frame_rate_hz = 15;
   plan.camera = {.kind = PathKind::kHover,
                  .altitude_m = 60,
                  .nominal_width_px = 720,
@@ -118,7 +130,8 @@ FlightPlan Square() {
                  .climb_m = 0.3,
                  .attitude_wobble_deg = 0.25,
                  .wobble_period = 45};
-  plan.sensor = {.read_sigma = 2.4};
+  plan.sensor = {.gain = 0.7, .bias = 30, .read_sigma = 2.0};
+  plan.traffic_contrast = 2.0;
   return plan;
 }
 
@@ -130,10 +143,11 @@ FlightPlan Valley() {
   plan.width = 720;
   plan.height = 576;
   plan.frames = 450;
-  plan.camera = {.altitude_m = 85,
+  plan.frame_rate_hz = 12;
+  plan.camera = {.altitude_m = 55,
                  .nominal_width_px = 720,
-                 .pixel_m = 0.118,
-                 .speed_m = 2.1,
+                 .pixel_m = 0.0764,
+                 .speed_m = 1.4,
                  .yaw_deg = 90,
                  .yaw_rate_deg = 0.02,
                  .yaw_wobble_deg = 0.8,
@@ -141,8 +155,9 @@ FlightPlan Valley() {
                  .sway_m = 2,
                  .climb_m = 1.5,
                  .attitude_wobble_deg = 0.3};
-  plan.sensor = {.read_sigma = 2.2};
-  plan.traffic_density = 0.27;
+  plan.sensor = {.gain = 0.6, .bias = 42, .read_sigma = 2.2};
+  plan.traffic_density = 0.29;
+  plan.traffic_contrast = 2.6;
   return plan;
 }
 
@@ -152,6 +167,8 @@ FlightPlan Harbour() {
   plan.name = "harbour";
   plan.scene = SceneKind::kHarbour;
   plan.frames = 384;
+  plan.seed = 3;
+  plan.frame_rate_hz = 12;
   plan.camera = {.kind = PathKind::kOrbit,
                  .altitude_m = 200,
                  .pixel_m = 0.25,
@@ -167,18 +184,19 @@ FlightPlan Harbour() {
   plan.sensor = {.exposure_share = 0.5,
                  .psf_sigma_px = 0.9,
                  .vignetting = 0.15,
-                 .gain = 0.42,
-                 .bias = 42,
-                 .steps = {{70, 3, 0.52, 28},
-                           {150, 2, 0.36, 64},
-                           {215, 6, 0.46, 40},
-                           {300, 2, 0.58, 22},
-                           {345, 4, 0.42, 46}},
-                 .read_sigma = 6.5,
-                 .shot_gain = 0.06,
+                 .gain = 0.62,
+                 .bias = 22,
+                 .steps = {{70, 3, 0.56, 24},
+                           {150, 2, 0.46, 54},
+                           {215, 6, 0.54, 32},
+                           {300, 2, 0.64, 16},
+                           {345, 4, 0.5, 38}},
+                 .read_sigma = 2.8,
+                 .shot_gain = 0.02,
                  .grey = true,
-                 .column_sigma = 1.1};
-  plan.traffic_density = 0.13;
+                 .column_sigma = 0.6};
+  plan.traffic_density = 0.15;
+  plan.traffic_contrast = 2.1;
   return plan;
 }
 
@@ -190,6 +208,7 @@ FlightPlan Highway() {
   plan.width = 720;
   plan.height = 576;
   plan.frames = 350;
+  plan.seed = 2;
   plan.camera = {.altitude_m = 48,
                  .nominal_width_px = 720,
                  .pixel_m = 0.082,
@@ -203,8 +222,10 @@ FlightPlan Highway() {
                  .attitude_wobble_deg = 0.5,
                  .zoom = 1.35,
                  .zoom_period = 140};
-  plan.sensor = {.exposure_share = 0.25, .read_sigma = 2.0};
+  plan.sensor = {
+      .exposure_share = 0.25, .psf_sigma_px = 1.0, .gain = 0.45, .bias = 58, .read_sigma = 2.0};
   plan.traffic_density = 1.5;
+  plan.traffic_contrast = 2;
   return plan;
 }
 
@@ -214,6 +235,7 @@ FlightPlan Suburb() {
   plan.name = "suburb";
   plan.scene = SceneKind::kSuburb;
   plan.frames = 350;
+  plan.frame_rate_hz = 15;
   plan.camera = {.altitude_m = 240,
                  .pixel_m = 0.31,
                  .heading_deg = 8,
@@ -225,9 +247,15 @@ FlightPlan Suburb() {
                  .sway_m = 5,
                  .climb_m = 5,
                  .attitude_wobble_deg = 0.5,
-                 .jitter_px = 4};
-  plan.sensor = {.exposure_share = 0.5, .vignetting = 0.15, .read_sigma = 2.4, .quantiser = 31};
+                 .jitter_px = 3};
+  plan.sensor = {.exposure_share = 0.5,
+                 .vignetting = 0.15,
+                 .gain = 0.55,
+                 .bias = 46,
+                 .read_sigma = 2.0,
+                 .quantiser = 31};
   plan.traffic_density = 0.34;
+  plan.traffic_contrast = 1.4;
   return plan;
 }
 

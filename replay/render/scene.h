@@ -195,6 +195,7 @@ struct Scene {
   Relief relief{};
   Sky sky{};
   Wind wind{};
+  float glint = 1.0F;  // of the sun in waves; 0: none
   std::vector<ParkedVehicle> parked;
   std::vector<Lane> lanes;
   std::vector<Walk> walks;

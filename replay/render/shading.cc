@@ -206,7 +206,7 @@ Shading::Light Shading::Water(const Hit& hit, Light light) const {
   const float glint = std::max(0.0F, 0.45F * swell + 0.6F * chop + 0.75F * fine - 0.72F);
   const float wave = 1 + 0.10F * swell + 0.08F * chop;
   for (float& channel : light.colour) {
-    channel = std::min(255.0F, channel * wave + 900 * glint * light.sun);
+    channel = std::min(255.0F, channel * wave + 900 * scene_.glint * glint * light.sun);
   }
   return light;
 }

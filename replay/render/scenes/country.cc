@@ -117,8 +117,8 @@ class Country {
     scene_.lanes.push_back({road, 0.25 * kRoadWidth, 150, 18, 25, {}, {}, {}});
     scene_.lanes.push_back({road.Reversed(), 0.25 * kRoadWidth, 420, 16, 23, {}, {}, {}});
     BuildVerges(road);
-    pieces_.AddTreeRow(road, 6.2, 17, 1.8, 3.4);
-    pieces_.AddTreeRow(road, -6.8, 41, 1.4, 3.0);
+    pieces_.AddTreeRow(road, 6.2, 8, 1.8, 3.4);
+    pieces_.AddTreeRow(road, -6.8, 14, 1.4, 3.0);
     for (double x = kWest + random_.Uniform(40, 120); x < east_; x += random_.Uniform(140, 260)) {
       BuildTrack(x);
     }
@@ -142,7 +142,7 @@ class Country {
 
   // A line of poles that comes along with the road and leaves it again.
   void BuildPoles() {
-    for (double x = kWest; x < east_; x += 38) {
+    for (double x = kWest; x < east_; x += 19) {
       const double y = RoadY(x) - 15 - 22 * Sine(x / 210);
       scene_.poles.push_back({{x, y}, 0.16, random_.Uniform(8, 9.5), {78, 92, 104}});
     }

@@ -29,6 +29,7 @@ class Harbour {
       : pieces_(plan.seed, scene_), random_(Mix(plan.seed, 0x4A2B)) {
     scene_.seed = plan.seed;
     scene_.thermal = true;
+    scene_.glint = 0;
     // There is no sun: what is left of the slopes' shading stands for what the day has warmed.
     scene_.sun.direction = Eigen::Vector3d(-0.3, 0.35, 0.89).normalized();
     scene_.sun.ambient = 0.9F;

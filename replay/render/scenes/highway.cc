@@ -30,6 +30,7 @@ class Highway {
   }
 
   Scene Build() {
+    scene_.wind.sway_m = 0.05;
     BuildLand();
     BuildRoads();
     BuildVerges();
@@ -83,15 +84,15 @@ class Highway {
       scene_.hedges.push_back(
           {{place.position + 15 * Right(place.forward), place.forward, 4.2, 0.4}, 0.8});
     }
-    for (double at = 0; at < middle.length(); at += random_.Uniform(2.5, 9)) {
+    for (double at = 0; at < middle.length(); at += random_.Uniform(6, 22)) {
       const double side = random_.Chance(0.35)  ? random_.Uniform(-1, 1)
                           : random_.Chance(0.5) ? random_.Uniform(17, 29)
                                                 : random_.Uniform(-40, -16);
       const bool low = std::abs(side) < 2;
       pieces_.AddTree(middle.At(at, side).position,
-                      low ? random_.Uniform(0.4, 0.8) : random_.Uniform(0.6, 3.2));
+                      low ? random_.Uniform(0.4, 0.8) : random_.Uniform(0.5, 1.5));
     }
-    pieces_.AddTreeRow(middle, -22, 13, 2.0, 3.8);
+    pieces_.AddTreeRow(middle, -22, 34, 1.2, 2.2);
   }
 
   // Rails along the carriageways, signs and lamps.
@@ -103,11 +104,11 @@ class Highway {
         scene_.walls.push_back({{place.position, place.forward, 8.1, 0.28}, 0.75, {176, 178, 178}});
       }
     }
-    for (double x = kWest; x < east_; x += 42) {
-      scene_.poles.push_back({{x, MiddleY(x)}, 0.14, 11, {150, 152, 152}, 2.6, {0, 1}});
+    for (double x = kWest; x < east_; x += 84) {
+      scene_.poles.push_back({{x, MiddleY(x)}, 0.12, 7, {112, 114, 114}, 1.8, {0, 1}});
       const double at = x + random_.Uniform(0, 30);
       scene_.poles.push_back(
-          {{at, MiddleY(at) + 16.5}, 0.09, random_.Uniform(2, 4), {160, 160, 160}});
+          {{at, MiddleY(at) + 16.5}, 0.07, random_.Uniform(1.5, 2.5), {140, 142, 140}});
     }
     for (double x = kWest + 60; x < east_; x += random_.Uniform(130, 210)) {  // sign boards
       scene_.walls.push_back(

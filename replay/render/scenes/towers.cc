@@ -27,7 +27,7 @@ class Towers {
         east_(plan.camera.start_x_m + plan.camera.speed_m * plan.frames + 240) {
     scene_.seed = plan.seed;
     scene_.sun.direction = Eigen::Vector3d(-0.5, 0.35, 1.05).normalized();
-    scene_.sun.ambient = 0.46F;
+    scene_.sun.ambient = 0.8F;
     scene_.meadow = {84, 108, 104};
   }
 

@@ -99,8 +99,8 @@ struct FlightPlan {
   double frame_rate_hz = 25.0;
   std::uint64_t seed = 1;
   double traffic_density = 1.0;  // vehicles and people for each that the scene has by itself
-  // How many times as far from asphalt as in the palette the colours of vehicles and clothes are;
-  // in a thermal scene, their warmth from that of the ground.
+  // How many times as far from asphalt as in the palette paint and clothes are; in a thermal scene,
+  // the warmth of bodies from that of the ground.
   double traffic_contrast = 1.0;
   // What the ground looks like instead of what the scene paints, and its size on the map; empty:
   // as the scene has it. CV_8UC3, blue first.

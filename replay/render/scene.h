@@ -238,7 +238,7 @@ class Random;
 VehicleLook RandomVehicle(Random& random);
 // A person in summer clothes; one in four hardly differs from asphalt.
 VehicleLook RandomPerson(Random& random);
-// Its colours `contrast` times as far from asphalt, within 8 to 247 grey levels.
+// Its paint or clothes `contrast` times as far from asphalt, within 8 to 247 grey levels.
 VehicleLook WithContrast(VehicleLook look, double contrast);
 // As a thermal camera sees it, `warm` with that probability: brighter than the ground, or darker
 // where its skin mirrors the cold sky; else hardly different from the ground.

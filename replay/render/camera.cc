@@ -84,7 +84,7 @@ double CameraPath::Vibration(int channel, double time) const {
   return sum;
 }
 
-void CameraPath::Place(double time, Camera& camera) const {
+Eigen::Vector3d CameraPath::PlaceAt(double time) const {
   Eigen::Vector2d place(plan_.start_x_m, plan_.start_y_m);
   const double angle =
       Radians(plan_.kind == PathKind::kOrbit ? plan_.orbit_deg * time : plan_.heading_deg);
@@ -100,14 +100,10 @@ void CameraPath::Place(double time, Camera& camera) const {
       place += plan_.sway_m * Eigen::Vector2d(Wobble(0, time), Wobble(5, time));
       break;
   }
-  camera.x_m = place.x();
-  camera.y_m = place.y();
-  camera.altitude_m = plan_.altitude_m + plan_.climb_m * Wobble(1, time);
+  return {place.x(), place.y(), plan_.altitude_m + plan_.climb_m * Wobble(1, time)};
 }
 
-Camera CameraPath::At(double time) const {
-  Camera camera;
-  Place(time, camera);
+CameraPath::Pose CameraPath::PoseAt(double time) const {
   double yaw_deg =
       plan_.yaw_deg + plan_.yaw_rate_deg * time + plan_.yaw_wobble_deg * Wobble(2, time);
   if (plan_.kind == PathKind::kOrbit) yaw_deg += plan_.orbit_deg * time - 90;
@@ -116,13 +112,35 @@ Camera CameraPath::At(double time) const {
                        Radians(plan_.attitude_wobble_deg * Wobble(3, time) - plan_.tilt_deg);
   const double roll =
       shake * Vibration(1, time) + Radians(plan_.attitude_wobble_deg * Wobble(4, time));
-  camera.camera_from_world =
-      RotationAbout(1, roll) * RotationAbout(0, pitch) * RotationAbout(2, -Radians(yaw_deg));
   const double swing = 0.5 - 0.5 * Cosine(2 * kPi * time / plan_.zoom_period);
-  camera.focal_px = focal_px_ * (1 + (plan_.zoom - 1) * swing);
-  camera.centre_x = 0.5 * (width_ - 1);
-  camera.centre_y = 0.5 * (height_ - 1);
-  return camera;
+  return {.place_m = PlaceAt(time),
+          .angles = {pitch, roll, Radians(yaw_deg)},
+          .focal_px = focal_px_ * (1 + (plan_.zoom - 1) * swing)};
+}
+
+Camera CameraPath::InPose(const Pose& pose) const {
+  return {.x_m = pose.place_m.x(),
+          .y_m = pose.place_m.y(),
+          .altitude_m = pose.place_m.z(),
+          .camera_from_world = RotationAbout(1, pose.angles[1]) * RotationAbout(0, pose.angles[0]) *
+                               RotationAbout(2, -pose.angles[2]),
+          .focal_px = pose.focal_px,
+          .centre_x = 0.5 * (width_ - 1),
+          .centre_y = 0.5 * (height_ - 1)};
+}
+
+Camera CameraPath::At(double time) const { return InPose(PoseAt(time)); }
+
+Camera CameraPath::Mean(std::span<const double> times) const {
+  Pose mean;
+  const double share = 1.0 / static_cast<double>(times.size());
+  for (const double time : times) {
+    const Pose pose = PoseAt(time);
+    mean.place_m += share * pose.place_m;
+    mean.angles += share * pose.angles;
+    mean.focal_px += share * pose.focal_px;
+  }
+  return InPose(mean);
 }
 
 }  // namespace windhover::replay

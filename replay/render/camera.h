@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 
 #include "replay/render/flight_plan.h"
 
@@ -39,13 +40,23 @@ class CameraPath {
 
   // `time` in frames.
   Camera At(double time) const;
+  // In the mean of its poses at `times`, at least one.
+  Camera Mean(std::span<const double> times) const;
   // The smallest that a ground pixel straight below gets at the plan's altitude, m.
   double pixel_m() const { return plan_.altitude_m / (focal_px_ * std::max(1.0, plan_.zoom)); }
 
  private:
+  struct Pose {
+    Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // x, y, altitude
+    Eigen::Vector3d angles = Eigen::Vector3d::Zero();   // pitch, roll, yaw, radians
+    double focal_px = 0.0;
+  };
+
   double Wobble(int channel, double time) const;
   double Vibration(int channel, double time) const;
-  void Place(double time, Camera& camera) const;
+  Eigen::Vector3d PlaceAt(double time) const;
+  Pose PoseAt(double time) const;
+  Camera InPose(const Pose& pose) const;
 
   CameraPlan plan_;
   int width_;

@@ -96,6 +96,15 @@ const FlightPlan& Checked(const FlightPlan& plan, int frames) {
   return plan;
 }
 
+// The times, in frames, at which the light of a frame is taken.
+std::array<double, kInstants> InstantsOf(int frame, const SensorPlan& sensor) {
+  std::array<double, kInstants> times{};
+  for (int i = 0; i < kInstants; ++i) {
+    times[i] = frame + sensor.exposure_share * ((i + 0.5) / kInstants - 0.5);
+  }
+  return times;
+}
+
 struct Seen {
   int left = 1 << 30;
   int top = 1 << 30;
@@ -154,9 +163,8 @@ std::vector<DrawnBody> Renderer::BodiesAt(double time) const {
 cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
   std::array<Camera, kInstants> cameras;
   std::array<std::vector<DrawnBody>, kInstants> bodies;
-  std::array<double, kInstants> times{};
+  const std::array<double, kInstants> times = InstantsOf(frame, plan_.sensor);
   for (int i = 0; i < kInstants; ++i) {
-    times[i] = frame + plan_.sensor.exposure_share * ((i + 0.5) / kInstants - 0.5);
     cameras[i] = camera_path_.At(times[i]);
     bodies[i] = BodiesAt(times[i]);
     for (DrawnBody& body : bodies[i]) {
@@ -185,9 +193,13 @@ cv::Mat Renderer::Frame(int frame, std::int64_t without) const {
   return sensor_.Expose(light, frame);
 }
 
+Camera Renderer::TrueCamera(int frame) const {
+  return camera_path_.Mean(InstantsOf(frame, plan_.sensor));
+}
+
 bool Renderer::Moves(const Traffic::Vehicle& vehicle, int frame) const {
   // Seen by the camera of `frame` both times, so that only the vehicle's own way counts.
-  const Camera camera = camera_path_.At(frame);
+  const Camera camera = TrueCamera(frame);
   const auto seen = [&](double time) {
     const VehiclePose pose = traffic_.PoseAt(vehicle, time);
     return camera.Project({pose.position.x(), pose.position.y(), pose.height});
@@ -199,12 +211,12 @@ bool Renderer::Moves(const Traffic::Vehicle& vehicle, int frame) const {
 Eigen::Matrix3d Renderer::TrueHomography(int frame) const {
   if (frame == 0) return Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d first_from_frame =
-      camera_path_.At(0).GroundFromPixel().inverse() * camera_path_.At(frame).GroundFromPixel();
+      TrueCamera(0).GroundFromPixel().inverse() * TrueCamera(frame).GroundFromPixel();
   return Normalised(first_from_frame);
 }
 
 FrameTruth Renderer::Truth(int frame) const {
-  const Camera camera = camera_path_.At(frame);
+  const Camera camera = TrueCamera(frame);
   FrameTruth truth;
   truth.first_from_frame = TrueHomography(frame);
   truth.horizon = camera.Horizon();
@@ -249,8 +261,8 @@ FrameTruth Renderer::Truth(int frame) const {
 }
 
 double Renderer::OffPlaneShare(int frame, int gap, double px) const {
-  const Camera now = camera_path_.At(frame);
-  const Camera then = camera_path_.At(frame + gap);
+  const Camera now = TrueCamera(frame);
+  const Camera then = TrueCamera(frame + gap);
   const Eigen::Matrix3d then_from_now = then.GroundFromPixel().inverse() * now.GroundFromPixel();
   const Eigen::Matrix3d rays = now.WorldFromPixel();
   View view(plan_.width, plan_.height);

@@ -19,7 +19,9 @@ namespace windhover::replay {
 
 // What is true about one rendered frame.
 struct FrameTruth {
-  // Ground at height 0: pixels of the frame to pixels of frame 0, at the middle of the exposures.
+  // Ground at height 0: pixels of the frame to pixels of frame 0. Both cameras are in the mean pose
+  // of their exposures, about which the picture is blurred; a camera that shakes is not there at
+  // the middle of the exposure.
   Eigen::Matrix3d first_from_frame = Eigen::Matrix3d::Identity();
   // The ground lies where a u + b v + c > 0; (a, b) has unit length, or is 0 where the camera looks
   // straight down.
@@ -71,6 +73,7 @@ class Renderer {
   void AddBody(std::int64_t id, const VehicleLook& look, VehiclePose pose, const Camera& camera,
                std::vector<DrawnBody>& bodies) const;
   double Seconds(double time) const { return time / plan_.frame_rate_hz; }
+  Camera TrueCamera(int frame) const;
   bool Moves(const Traffic::Vehicle& vehicle, int frame) const;
 
   FlightPlan plan_;

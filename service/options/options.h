@@ -36,6 +36,7 @@ struct RegistrationOptions {
   double min_inlier_share = 0.4;
   double max_residual_px = 1.0;
   double min_overlap = 0.8;
+  double min_agreement = 0.8;
 
   static constexpr auto Fields() {
     using O = RegistrationOptions;
@@ -61,7 +62,10 @@ struct RegistrationOptions {
         Number("max-residual", &O::max_residual_px, 0.05, 20.0, "px",
                "RMS distance of the inliers from the homography above which it is degraded"),
         Number("min-overlap", &O::min_overlap, 0.3, 0.99, "",
-               "Share of the frame that must lie on the anchor; below it the anchor moves on"));
+               "Share of the frame that must lie on the anchor; below it the anchor moves on"),
+        Number("min-agreement", &O::min_agreement, 0.0, 1.0, "",
+               "Inliers, as a share of the most that this anchor has had, below which it moves on: "
+               "what stands out of the ground agrees less and less as the camera flies past"));
   }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/vision/registration.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -53,6 +54,7 @@ struct StreamRegistration::State {
   bool has_reference = false;
   // The reference picture is the anchor in anchor mode, the previous frame in centre mode.
   std::uint64_t reference_number = 0;
+  int most_inliers = 0;  // of the registrations to it
   Eigen::Matrix3d reference_from_previous = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d last_frame_from_previous = Eigen::Matrix3d::Identity();
 };
@@ -86,6 +88,7 @@ TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImag
 void StreamRegistration::State::MoveReference(const GrayImage& frame, std::uint64_t frame_number) {
   tiles.SetReference(frame, *reference);
   reference_number = frame_number;
+  most_inliers = 0;
   reference_from_previous.setIdentity();
 }
 
@@ -120,7 +123,9 @@ void StreamRegistration::State::Accept(const GrayImage& frame, const TileMeasure
   reference_from_previous = reference_from_frame;
   const bool anchored = options.reference == ReferenceMode::kAnchor;
   if (anchored) registration.anchor_from_frame = reference_from_frame;
+  most_inliers = std::max(most_inliers, measurement.inliers);
   const bool worn = measurement.overlap < options.min_overlap ||
+                    measurement.inliers < options.min_agreement * most_inliers ||
                     measurement.quality == RegistrationQuality::kDegraded;
   if (!anchored || worn) {
     MoveReference(frame, registration.frame_number);

@@ -49,7 +49,7 @@ Eigen::Matrix3d Flight(int t, double shift_px, double radians) {
 
 TEST_P(StreamRegistrationTest, Nominal) {
   const auto registration = Make();
-  Eigen::Matrix3d before;
+  Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
   for (int t = 0; t < 30; ++t) {
     const Eigen::Matrix3d ground_from_frame = Flight(t, 4.0, 0.006);
     const FrameRegistration r = registration->Register(Frame(ground_from_frame));
@@ -196,6 +196,38 @@ TEST(StreamRegistrationAnchor, MovesOnWhenOverlapShrinks) {
     EXPECT_LT(HomographyRms(*r.anchor_from_frame, truth, kWidth, kHeight), 0.1) << t;
   }
   EXPECT_GE(moves, 3);
+}
+
+TEST(StreamRegistrationAnchor, MovesOnWhenParallaxSpoilsTheAgreement) {
+  const auto backend = Backend::Create("cpu");
+  const RegistrationOptions options;
+  StreamRegistration registration(backend, kWidth, kHeight, options);
+  GrayImage frame = backend->MakeImage<std::uint8_t>(kWidth, kHeight);
+  const SyntheticGround ground;
+  // Roofs on a third of the ground move past it by a third of a pixel a frame.
+  const SyntheticGround roofs(2);
+  constexpr double kRoofPx = 70;
+  constexpr double kParallaxPx = 0.33;
+  const auto ground_from_frame = [](int t) { return Flight(t, 1.0, 0.0); };
+  std::uint64_t anchor = 0;
+  int moves = 0;
+  for (int t = 0; t < 30; ++t) {
+    ground.Render(ground_from_frame(t), 1.0, t, frame, [&](int x, int y, double v) {
+      const Eigen::Vector2d seen = Project(ground_from_frame(t), {x, y});
+      const int cell =
+          static_cast<int>(seen.x() / kRoofPx + 100) + static_cast<int>(seen.y() / kRoofPx + 100);
+      return cell % 3 == 0 ? roofs.At(seen.x() + kParallaxPx * t, seen.y()) : v;
+    });
+    const FrameRegistration r = registration.Register(frame);
+    ASSERT_EQ(r.quality, RegistrationQuality::kValid) << t;
+    if (r.anchor_number != anchor) ++moves;
+    anchor = r.anchor_number;
+    EXPECT_GT(r.overlap, options.min_overlap);
+    const Eigen::Matrix3d truth =
+        ground_from_frame(static_cast<int>(anchor)).inverse() * ground_from_frame(t);
+    EXPECT_LT(HomographyRms(*r.anchor_from_frame, truth, kWidth, kHeight), 0.5) << t;
+  }
+  EXPECT_GE(moves, 2);
 }
 
 TEST(TileLayoutTest, CoversThePictureWithOverlap) {

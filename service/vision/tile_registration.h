@@ -7,7 +7,7 @@
 #include "gpu-kernels/backend.h"
 #include "gpu-kernels/phase_correlation/phase_correlation.h"
 #include "service/options/options.h"
-#include "service/vision/homography.h"
+#include "service/vision/homography_estimator.h"
 #include "service/vision/types.h"
 
 namespace windhover {

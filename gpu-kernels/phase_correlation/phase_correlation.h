@@ -16,14 +16,23 @@ struct TileOrigin {
   int y = 0;
 };
 
+// What fades a tile out towards its border before the transform (thesis 2.4.4), along each axis.
+enum class TileWindow {
+  kNone,
+  kBlackman,  // alpha as in the exact Blackman window, 0 to 0.25
+  kCosine,    // half a period; alpha says nothing
+  kGaussian,  // alpha: standard deviation as a share of the side, over 0
+  kTukey,  // alpha: share of the side that stays flat between two tapers of half a cosine, 0 to 1
+};
+
 struct PhaseCorrelationSettings {
   // Tile sides in px: powers of two, 16 to 512, the same for all tiles.
   int tile_width = 128;
   int tile_height = 128;
   // 1 to 1024 tiles. They may overlap and may reach outside the grid's picture.
   std::vector<TileOrigin> tiles;
-  // Blackman window's alpha (thesis 2.4.4: 0.16), 0 to 0.5.
-  float blackman_alpha = 0.16F;
+  TileWindow window = TileWindow::kBlackman;
+  float window_alpha = 0.16F;  // thesis 2.4.4
   // Standard deviation in px that a perfect match's peak shall have, 0 to 4: the normalised
   // cross-power spectrum is weighted with the Gaussian that gives it. Makes the log-quadratic fit
   // (eq. 2.19) exact and keeps the noisy high frequencies out. 0 is the thesis as written.
@@ -73,7 +82,8 @@ class TileSpectra {
 // transform    pixel x of a tile is the picture at picture_from_grid(origin + x), bilinear; samples
 //              outside the picture count as the tile's mean. The window-weighted mean is taken off
 //              before windowing.
-// sub-pixel    a quadratic in x, y and xy through the logarithms of the samples about the peak, which
+// sub-pixel    a quadratic in x, y and xy through the logarithms of the samples about the peak,
+// which
 //              peaks of any direction need, within +-1 px; else eq. 2.19 along each axis; where a
 //              neighbour is not positive, a parabola through the values, within +-0.5 px (thesis
 //              errata: never NaN).

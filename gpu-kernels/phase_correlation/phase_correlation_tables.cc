@@ -21,6 +21,21 @@ bool IsTileSide(int side) {
   return side >= kMinSide && side <= kMaxSide && std::has_single_bit(static_cast<unsigned>(side));
 }
 
+bool IsWindowAlpha(TileWindow window, float alpha) {
+  switch (window) {
+    case TileWindow::kNone:
+    case TileWindow::kCosine:
+      return true;
+    case TileWindow::kBlackman:
+      return alpha >= 0.0F && alpha <= 0.25F;
+    case TileWindow::kGaussian:
+      return alpha > 0.0F && alpha <= 10.0F;
+    case TileWindow::kTukey:
+      return alpha >= 0.0F && alpha <= 1.0F;
+  }
+  return false;
+}
+
 void Check(const PhaseCorrelationSettings& settings) {
   if (!IsTileSide(settings.tile_width) || !IsTileSide(settings.tile_height)) {
     throw std::invalid_argument("phase correlation: tile sides must be powers of two, 16 to 512");
@@ -28,8 +43,8 @@ void Check(const PhaseCorrelationSettings& settings) {
   if (settings.tiles.empty() || settings.tiles.size() > kMaxTiles) {
     throw std::invalid_argument("phase correlation: must have 1 to 1024 tiles");
   }
-  if (!(settings.blackman_alpha >= 0.0F && settings.blackman_alpha <= 0.25F)) {
-    throw std::invalid_argument("phase correlation: Blackman alpha must be 0 to 0.25");
+  if (!IsWindowAlpha(settings.window, settings.window_alpha)) {
+    throw std::invalid_argument("phase correlation: alpha out of its window's range");
   }
   if (!(settings.peak_sigma_px >= 0.0F && settings.peak_sigma_px <= 4.0F)) {
     throw std::invalid_argument("phase correlation: peak sigma must be 0 to 4 px");
@@ -39,14 +54,33 @@ void Check(const PhaseCorrelationSettings& settings) {
   }
 }
 
-// The exact Blackman window of thesis 2.4.4 at the middles of `side` equal parts of its support.
-std::vector<float> BlackmanWindow(int side, double alpha) {
+// Weight at `x` in (0, 1), from one border of the tile to the other.
+double WindowWeight(TileWindow window, double alpha, double x) {
+  const double phase = 2.0 * kPi * x;
+  switch (window) {
+    case TileWindow::kNone:
+      return 1.0;
+    case TileWindow::kBlackman:
+      return (1.0 - alpha) / 2.0 - 0.5 * std::cos(phase) + alpha / 2.0 * std::cos(2.0 * phase);
+    case TileWindow::kCosine:
+      return std::sin(0.5 * phase);
+    case TileWindow::kGaussian:
+      return std::exp(-0.5 * (x - 0.5) * (x - 0.5) / (alpha * alpha));
+    case TileWindow::kTukey: {
+      const double taper = 0.5 * (1.0 - alpha);
+      const double from_border = std::min(x, 1.0 - x);
+      return from_border >= taper ? 1.0 : 0.5 - 0.5 * std::cos(kPi * from_border / taper);
+    }
+  }
+  return 1.0;
+}
+
+// At the middles of `side` equal parts of its support.
+std::vector<float> WindowWeights(const PhaseCorrelationSettings& settings, int side) {
   std::vector<float> weights(side);
   for (int i = 0; i < side; ++i) {
-    const double phase = 2.0 * kPi * (i + 0.5) / side;
-    const double weight =
-        (1.0 - alpha) / 2.0 - 0.5 * std::cos(phase) + alpha / 2.0 * std::cos(2.0 * phase);
-    weights[i] = static_cast<float>(weight);
+    const double x = (i + 0.5) / side;
+    weights[i] = static_cast<float>(WindowWeight(settings.window, settings.window_alpha, x));
   }
   return weights;
 }
@@ -208,8 +242,8 @@ PhaseCorrelationTables::PhaseCorrelationTables(const PhaseCorrelationSettings& s
   tile_width = settings.tile_width;
   tile_height = settings.tile_height;
   spectrum_width = tile_width / 2 + 1;
-  window_x = BlackmanWindow(tile_width, settings.blackman_alpha);
-  window_y = BlackmanWindow(tile_height, settings.blackman_alpha);
+  window_x = WindowWeights(settings, tile_width);
+  window_y = WindowWeights(settings, tile_height);
   window_sum = static_cast<float>(Sum(window_x) * Sum(window_y));
   spectral_weight = SpectralWeight(tile_width, tile_height, settings.peak_sigma_px);
   const double grey_variance =

@@ -26,7 +26,7 @@ struct PhaseCorrelationTables {
   // Columns of the half spectrum that a real transform yields: tile_width / 2 + 1.
   int spectrum_width;
 
-  // Blackman weights, positive and symmetric about (side - 1) / 2; a sample's weight is
+  // The window's weights, positive and symmetric about (side - 1) / 2; a sample's weight is
   // window_x[x] * window_y[y]. window_sum is the sum over the tile.
   std::vector<float> window_x;
   std::vector<float> window_y;
@@ -66,12 +66,14 @@ struct PeakNeighbourhood {
 
 // The last step of the correlation, for one tile: sub-pixel place, height, footprint, validity.
 //
-// sub-pixel   the maximum of the quadratic in x, y and xy that fits the logarithms of the 3x3 samples
-//             about the highest and of all above 0.7 of it, weighted with the squared sample; within
-//             +-1 px. Where that has none, or a sample of the 3x3 is not positive, for each axis with
-//             l, c, r the highest sample and its two neighbours: eq. 2.19 where all are positive,
-//             else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5; 0 where the
-//             denominator is not positive.
+// sub-pixel   the maximum of the quadratic in x, y and xy that fits the logarithms of the 3x3
+// samples
+//             about the highest and of all above 0.7 of it, weighted with the squared sample;
+//             within
+//             +-1 px. Where that has none, or a sample of the 3x3 is not positive, for each axis
+//             with l, c, r the highest sample and its two neighbours: eq. 2.19 where all are
+//             positive, else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5; 0 where
+//             the denominator is not positive.
 // footprint   samples of the neighbourhood above max(3 * noise, height / 16), each weighted with
 //             its excess over that; second central moments, plus 1/12 px^2 for a sample's extent.
 // covariance  footprint moments times (noise / height)^2, plus 1e-6 px^2 on the diagonal. Agrees

@@ -56,10 +56,10 @@ std::vector<Contestant> MakeContestants(const Backends& backends, cv::Size size,
   std::vector<Contestant> contestants;
   for (const auto& [device, backend] : backends) {
     for (const ThesisLayout& layout : kThesisLayouts) {
-      if (layout.columns == 0) continue;
       RegistrationOptions options;
       options.tile_columns = layout.columns;
       options.tile_rows = layout.rows;
+      options.tile_layers = layout.layers;
       try {
         contestants.push_back(
             {std::make_unique<ProductRegistration>(backend, size.width, size.height, options),

@@ -57,7 +57,7 @@ FigurePlot LayoutTimePlot(const RegistrationResults& results) {
                      .y = {"time of a frame, ms", false, {}, {}},
                      .panels = {{}}};
   for (const ThesisLayout& layout : kThesisLayouts) {
-    if (layout.columns > 0) plot.x.categories.emplace_back(layout.name);
+    plot.x.categories.emplace_back(layout.name);
   }
   for (const auto& [device, times] : results.layout_times_ms) {
     PlotSeries& series = plot.panels.front().series.emplace_back();

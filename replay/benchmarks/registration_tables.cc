@@ -137,7 +137,6 @@ FigureTable LayoutTimeTable(const RegistrationResults& results) {
   }
   if (results.layout_times_ms.empty()) return table;
   for (const ThesisLayout& layout : kThesisLayouts) {
-    if (layout.columns == 0) continue;
     std::vector<TableCell>& row = table.rows.emplace_back();
     row.emplace_back(layout.name);
     for (const auto& [device, times] : results.layout_times_ms) {

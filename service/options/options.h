@@ -24,12 +24,17 @@ enum class ReferenceMode {
   kAnchor,  // a keyframe that moves on when overlap shrinks: one registration a frame
 };
 
+// What fades each tile out towards its border (thesis 2.4.4).
+enum class WindowKind { kNone, kBlackman, kCosine, kGaussian, kTukey };
+
 // Tiled phase correlation and the homography from its matches (thesis 2.4).
 struct RegistrationOptions {
   ReferenceMode reference = ReferenceMode::kAnchor;
   int tile_columns = 6;
   int tile_rows = 6;
-  double blackman_alpha = 0.16;
+  int tile_layers = 1;
+  WindowKind window = WindowKind::kBlackman;
+  double window_alpha = 0.16;
   double peak_sigma_px = 1.0;
   double noise_sigma = 4.0;
   double ransac_threshold_px = 1.0;
@@ -48,8 +53,17 @@ struct RegistrationOptions {
                "What the frames of a window are registered to"),
         Number("tile-columns", &O::tile_columns, 2, 25, "", "Tiles across the picture"),
         Number("tile-rows", &O::tile_rows, 2, 25, "", "Tiles down the picture"),
-        Number("blackman-alpha", &O::blackman_alpha, 0.0, 0.25, "",
-               "Alpha of the Blackman window that fades each tile out towards its border"),
+        Number("tile-layers", &O::tile_layers, 1, 2, "",
+               "2 lays another tile between each four neighbours"),
+        Choice("window", &O::window,
+               std::array<std::string_view, 5>{"none", "blackman", "cosine", "gaussian", "tukey"},
+               std::array<std::string_view, 5>{
+                   "tiles as they are", "the exact Blackman window, window-alpha 0 to 0.25",
+                   "half a period of a cosine",
+                   "a Gaussian, window-alpha its standard deviation as a share of the side",
+                   "flat over window-alpha of the side, between two tapers"},
+               "What fades each tile out towards its border"),
+        Number("window-alpha", &O::window_alpha, 0.0, 1.0, "", "The window's parameter"),
         Number("peak-sigma", &O::peak_sigma_px, 0.0, 4.0, "px",
                "Standard deviation that the correlation peak is smoothed to; 0 smooths nothing"),
         Number("noise-sigma", &O::noise_sigma, 0.1, 64.0, "grey levels",

@@ -7,6 +7,7 @@
 
 #include "service/vision/global_shift.h"
 #include "service/vision/homography.h"
+#include "service/vision/tile_layout.h"
 #include "service/vision/tile_registration.h"
 
 namespace windhover {
@@ -98,7 +99,7 @@ void StreamRegistration::State::StartSegment(const GrayImage& frame,
   last_frame_from_previous.setIdentity();
   registration.starts_segment = true;
   registration.anchor_number = registration.frame_number;
-  registration.tiles = options.tile_columns * options.tile_rows;
+  registration.tiles = TileCount(options.tile_columns, options.tile_rows, options.tile_layers);
   if (options.reference == ReferenceMode::kAnchor) {
     registration.anchor_from_frame = Eigen::Matrix3d::Identity();
   }

@@ -33,7 +33,11 @@ int Origin(int index, int count, int side, int picture_px) {
 
 }  // namespace
 
-TileLayout UniformTileLayout(int width, int height, int columns, int rows) {
+int TileCount(int columns, int rows, int layers) {
+  return columns * rows + (layers > 1 ? (columns - 1) * (rows - 1) : 0);
+}
+
+TileLayout UniformTileLayout(int width, int height, int columns, int rows, int layers) {
   const double ideal_width = width / SidesAlong(columns);
   const double ideal_height = height / SidesAlong(rows);
   if (ideal_width < kMinSidePx || ideal_height < kMinSidePx) {
@@ -52,6 +56,15 @@ TileLayout UniformTileLayout(int width, int height, int columns, int rows) {
     for (int column = 0; column < columns; ++column) {
       layout.tiles.push_back({Origin(column, columns, layout.tile_width, width),
                               Origin(row, rows, layout.tile_height, height)});
+    }
+  }
+  if (layers == 1) return layout;
+  for (int row = 0; row + 1 < rows; ++row) {
+    for (int column = 0; column + 1 < columns; ++column) {
+      const TileOrigin& upper_left = layout.tiles[row * columns + column];
+      const TileOrigin& lower_right = layout.tiles[(row + 1) * columns + column + 1];
+      layout.tiles.push_back(
+          {(upper_left.x + lower_right.x) / 2, (upper_left.y + lower_right.y) / 2});
     }
   }
   return layout;

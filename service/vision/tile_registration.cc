@@ -11,23 +11,55 @@
 namespace windhover {
 namespace {
 
-// A homography of four matches has nothing to check it; below this share of the tiles, agreement is
-// not told from chance.
-constexpr int kMinInliers = 5;
+// Four matches determine a homography and leave nothing to check it, so that layouts of four tiles
+// come back as degraded at best.
+constexpr int kMinimalMatches = 4;
+constexpr int kFewTiles = 5;
+// Below this share of the tiles, agreement is not told from chance.
 constexpr double kMinInlierShareOfTiles = 0.2;
 
-PhaseCorrelationSettings MakeSettings(int width, int height, const RegistrationOptions& options) {
-  if (options.tile_columns * options.tile_rows < kMinInliers) {
-    throw OptionError("option tile-columns = " + std::to_string(options.tile_columns) +
-                      " and tile-rows = " + std::to_string(options.tile_rows) +
-                      ": a registration takes " + std::to_string(kMinInliers) + " tiles at least");
+double LeastInliers(int tiles) {
+  if (tiles <= kFewTiles) return kMinimalMatches;
+  return std::max<double>(kMinimalMatches + 1, kMinInlierShareOfTiles * tiles);
+}
+
+TileWindow Window(WindowKind kind) {
+  switch (kind) {
+    case WindowKind::kNone:
+      return TileWindow::kNone;
+    case WindowKind::kBlackman:
+      return TileWindow::kBlackman;
+    case WindowKind::kCosine:
+      return TileWindow::kCosine;
+    case WindowKind::kGaussian:
+      return TileWindow::kGaussian;
+    case WindowKind::kTukey:
+      return TileWindow::kTukey;
   }
-  TileLayout layout = UniformTileLayout(width, height, options.tile_columns, options.tile_rows);
+  return TileWindow::kBlackman;
+}
+
+// Refuses an alpha that its window has no use for.
+void CheckWindow(const RegistrationOptions& options) {
+  const bool blackman = options.window == WindowKind::kBlackman;
+  const bool gaussian = options.window == WindowKind::kGaussian;
+  if ((blackman && options.window_alpha > 0.25) || (gaussian && options.window_alpha == 0.0)) {
+    throw OptionError("option window-alpha = " + OptionText(options, "window-alpha") +
+                      ": with window = " + OptionText(options, "window") + " it is " +
+                      (blackman ? "0 to 0.25" : "over 0"));
+  }
+}
+
+PhaseCorrelationSettings MakeSettings(int width, int height, const RegistrationOptions& options) {
+  CheckWindow(options);
+  TileLayout layout = UniformTileLayout(width, height, options.tile_columns, options.tile_rows,
+                                        options.tile_layers);
   PhaseCorrelationSettings settings;
   settings.tile_width = layout.tile_width;
   settings.tile_height = layout.tile_height;
   settings.tiles = std::move(layout.tiles);
-  settings.blackman_alpha = static_cast<float>(options.blackman_alpha);
+  settings.window = Window(options.window);
+  settings.window_alpha = static_cast<float>(options.window_alpha);
   settings.peak_sigma_px = static_cast<float>(options.peak_sigma_px);
   settings.noise_sigma = static_cast<float>(options.noise_sigma);
   return settings;
@@ -74,7 +106,7 @@ bool TileRegistration::HasTexture(const TileSpectra& reference) {
   correlation_->Correlate(reference, reference, peaks_);
   const auto peaks =
       std::count_if(peaks_.begin(), peaks_.end(), [](const TilePeak& p) { return p.valid; });
-  return peaks >= std::max<double>(kMinInliers, kMinInlierShareOfTiles * peaks_.size());
+  return static_cast<double>(peaks) >= LeastInliers(static_cast<int>(peaks_.size()));
 }
 
 TileMeasurement TileRegistration::Measure(const TileSpectra& reference, const GrayImage& frame,
@@ -145,9 +177,9 @@ bool TileRegistration::NeedsSecondPass(const Eigen::Matrix3d& predicted_frame_fr
 }
 
 RegistrationQuality TileRegistration::Judge(const TileMeasurement& measurement, int peaks) const {
-  const double least = std::max<double>(kMinInliers, kMinInlierShareOfTiles * measurement.tiles);
-  if (measurement.inliers < least) return RegistrationQuality::kLost;
-  const bool valid = measurement.inliers >= options_.min_inlier_share * peaks &&
+  if (measurement.inliers < LeastInliers(measurement.tiles)) return RegistrationQuality::kLost;
+  const bool valid = measurement.inliers > kMinimalMatches &&
+                     measurement.inliers >= options_.min_inlier_share * peaks &&
                      measurement.residual_px <= options_.max_residual_px;
   return valid ? RegistrationQuality::kValid : RegistrationQuality::kDegraded;
 }

@@ -181,6 +181,31 @@ TEST_P(PhaseCorrelationAccuracyTest, PureNoiseGivesNoPeak) {
 
 WINDHOVER_TEST_ON_ALL_BACKENDS(PhaseCorrelationAccuracyTest);
 
+TEST(TileWindowTest, WeightsAreWhatTheirNamesSay) {
+  const auto weights = [](TileWindow window, float alpha) {
+    PhaseCorrelationSettings settings;
+    settings.tile_width = 64;
+    settings.tiles = {{0, 0}};
+    settings.window = window;
+    settings.window_alpha = alpha;
+    const std::vector<float> w = PhaseCorrelationTables(settings).window_x;
+    EXPECT_EQ(w.size(), 64U);
+    for (int i = 0; i < 32; ++i) EXPECT_NEAR(w[i], w[63 - i], 1e-6F);
+    EXPECT_TRUE(std::is_sorted(w.begin(), w.begin() + 32));
+    return w;
+  };
+  for (const float w : weights(TileWindow::kNone, 0.0F)) EXPECT_EQ(w, 1.0F);
+  EXPECT_NEAR(weights(TileWindow::kBlackman, 0.16F)[31], 1.0F, 0.01F);
+  EXPECT_LT(weights(TileWindow::kBlackman, 0.16F)[0], 1e-3F);
+  EXPECT_NEAR(weights(TileWindow::kCosine, 0.0F)[15], std::numbers::sqrt2 / 2, 0.02F);
+  // 16 px from the middle are two and a half standard deviations of a tenth of 64 px.
+  EXPECT_NEAR(weights(TileWindow::kGaussian, 0.1F)[15], std::exp(-0.5 * 2.58 * 2.58), 0.005F);
+  const std::vector<float> tukey = weights(TileWindow::kTukey, 0.5F);
+  EXPECT_EQ(tukey[16], 1.0F);
+  EXPECT_LT(tukey[14], 1.0F);
+  EXPECT_LT(tukey[0], 0.01F);
+}
+
 TEST(MeasurePeakTest, FindsGaussiansOfAnyDirection) {
   PhaseCorrelationSettings settings;
   settings.tiles = {{0, 0}};

@@ -194,6 +194,28 @@ TEST_P(PhaseCorrelationTest, MeasuresKnownShiftsWithTheRightSign) {
   }
 }
 
+TEST_P(PhaseCorrelationTest, EveryWindowMeasures) {
+  const Picture reference = Shot({333, 251}, kIdentity3);
+  const Picture current = Shot({333, 251}, Shift(-2.4, 1.3));
+  for (const auto& [window, alpha] : {std::pair{TileWindow::kNone, 0.0F},
+                                      {TileWindow::kBlackman, 0.0F},
+                                      {TileWindow::kCosine, 0.0F},
+                                      {TileWindow::kGaussian, 0.1F},
+                                      {TileWindow::kTukey, 0.6F}}) {
+    PhaseCorrelationSettings settings = Settings(128, 128, SomeTiles(128, 128));
+    settings.window = window;
+    settings.window_alpha = alpha;
+    const auto peaks = Run(settings, {"", reference, current});
+    // Without a window the border, which stays where it is, pulls towards 0.
+    const double tolerance_px = window == TileWindow::kNone ? 1.0 : 0.1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_TRUE(peaks[i].valid) << static_cast<int>(window);
+      EXPECT_NEAR(peaks[i].dx, 2.4, tolerance_px) << static_cast<int>(window);
+      EXPECT_NEAR(peaks[i].dy, -1.3, tolerance_px) << static_cast<int>(window);
+    }
+  }
+}
+
 TEST_P(PhaseCorrelationTest, SwappedPicturesShiftTheOtherWay) {
   const Picture a = Shot({333, 251}, kIdentity3);
   const Picture b = Shot({333, 251}, Shift(2.4, -5.1));
@@ -306,7 +328,11 @@ TEST_P(PhaseCorrelationTest, RefusesWhatTheContractRefuses) {
   EXPECT_THROW(make([](S& s) { s.tile_width = 1024; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.tiles.clear(); }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.tiles.resize(1025); }), std::invalid_argument);
-  EXPECT_THROW(make([](S& s) { s.blackman_alpha = 0.26F; }), std::invalid_argument);
+  EXPECT_THROW(make([](S& s) { s.window_alpha = 0.26F; }), std::invalid_argument);
+  EXPECT_THROW(make([](S& s) { s.window = TileWindow::kGaussian, s.window_alpha = 0.0F; }),
+               std::invalid_argument);
+  EXPECT_THROW(make([](S& s) { s.window = TileWindow::kTukey, s.window_alpha = 1.1F; }),
+               std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.peak_sigma_px = -1.0F; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.noise_sigma = 0.0F; }), std::invalid_argument);
   EXPECT_THROW(make([](S& s) { s.noise_sigma = std::nanf(""); }), std::invalid_argument);

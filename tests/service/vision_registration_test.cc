@@ -101,18 +101,59 @@ TEST_P(StreamRegistrationTest, IdentityInIdentityOut) {
             1e-3);
 }
 
-TEST(TileRegistrationTest, RefusesLayoutsThatCannotRegister) {
-  RegistrationOptions options;
-  options.tile_columns = 2;
-  options.tile_rows = 2;
-  try {
-    StreamRegistration(Backend::Create("cpu"), kWidth, kHeight, options);
-    FAIL();
-  } catch (const OptionError& error) {
-    EXPECT_NE(std::string(error.what()).find("tile-columns = 2"), std::string::npos);
+// The thesis' 13 layouts; four matches leave nothing to check a homography with.
+TEST(TileRegistrationTest, EveryLayoutRegisters) {
+  struct Case {
+    int columns, rows, layers, tiles;
+  };
+  constexpr int kLargeWidth = 640;
+  constexpr int kLargeHeight = 481;
+  const auto backend = Backend::Create("cpu");
+  const SyntheticGround ground;
+  GrayImage reference = backend->MakeImage<std::uint8_t>(kLargeWidth, kLargeHeight);
+  GrayImage frame = backend->MakeImage<std::uint8_t>(kLargeWidth, kLargeHeight);
+  const Eigen::Matrix3d truth = CameraMotion(kLargeWidth, kLargeHeight, 0.004, 1.002, 6, -4, 0);
+  ground.Render(Eigen::Matrix3d::Identity(), 2.0, 1, reference);
+  ground.Render(truth, 2.0, 2, frame);
+  for (const Case& c : {Case{2, 2, 1, 4},
+                        {2, 2, 2, 5},
+                        {4, 2, 1, 8},
+                        {3, 3, 1, 9},
+                        {4, 4, 1, 16},
+                        {5, 5, 1, 25},
+                        {4, 4, 2, 25},
+                        {6, 6, 1, 36},
+                        {8, 8, 1, 64},
+                        {10, 10, 1, 100},
+                        {15, 15, 1, 225}}) {
+    RegistrationOptions options;
+    options.tile_columns = c.columns;
+    options.tile_rows = c.rows;
+    options.tile_layers = c.layers;
+    StreamRegistration registration(backend, kLargeWidth, kLargeHeight, options);
+    EXPECT_EQ(registration.Register(reference).tiles, c.tiles);
+    const FrameRegistration r = registration.Register(frame);
+    EXPECT_EQ(r.tiles, c.tiles);
+    EXPECT_EQ(r.quality,
+              c.tiles == 4 ? RegistrationQuality::kDegraded : RegistrationQuality::kValid)
+        << c.tiles;
+    EXPECT_LT(HomographyRms(r.previous_from_frame, truth, kLargeWidth, kLargeHeight), 0.25)
+        << c.tiles;
   }
-  options.tile_columns = 3;
-  EXPECT_NO_THROW(StreamRegistration(Backend::Create("cpu"), kWidth, kHeight, options));
+}
+
+TEST(TileRegistrationTest, RefusesAnAlphaThatItsWindowHasNoUseFor) {
+  const auto backend = Backend::Create("cpu");
+  RegistrationOptions options;
+  options.window_alpha = 0.3;
+  try {
+    TileRegistration(*backend, kWidth, kHeight, options);
+    FAIL() << "no error";
+  } catch (const OptionError& error) {
+    EXPECT_STREQ(error.what(), "option window-alpha = 0.3: with window = blackman it is 0 to 0.25");
+  }
+  options.window = WindowKind::kTukey;
+  EXPECT_NO_THROW(TileRegistration(*backend, kWidth, kHeight, options));
 }
 
 TEST_P(StreamRegistrationTest, NoTextureIsLost) {
@@ -241,6 +282,21 @@ TEST(TileLayoutTest, CoversThePictureWithOverlap) {
   const TileLayout large = UniformTileLayout(1920, 1080, 6, 6);
   EXPECT_EQ(large.tile_width, 512);
   EXPECT_EQ(large.tile_height, 256);
+}
+
+TEST(TileLayoutTest, TheSecondLayerLiesBetweenTheFirst) {
+  const TileLayout layout = UniformTileLayout(640, 480, 4, 4, 2);
+  ASSERT_EQ(layout.tiles.size(), TileCount(4, 4, 2));
+  ASSERT_EQ(layout.tiles.size(), 25U);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      const TileOrigin& between = layout.tiles[16 + row * 3 + column];
+      const TileOrigin& upper_left = layout.tiles[row * 4 + column];
+      const TileOrigin& lower_right = layout.tiles[(row + 1) * 4 + column + 1];
+      EXPECT_NEAR(between.x - upper_left.x, lower_right.x - between.x, 1);
+      EXPECT_NEAR(between.y - upper_left.y, lower_right.y - between.y, 1);
+    }
+  }
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 namespace windhover {
 namespace {
 
+constexpr double kUncontestedShare = 0.7;  // of the tiles
+
 // The camera goes on turning and zooming as it did (`last_frame_from_previous`), but the picture's
 // centre moves by the shift that was seen.
 Eigen::Matrix3d WithCentreShift(const Eigen::Matrix3d& last_frame_from_previous,
@@ -62,7 +64,7 @@ struct StreamRegistration::State {
 
 // Predictions in the order of trust: the last motion with the shift that was seen, that shift
 // alone, the last motion alone. Each costs a registration, so the next is tried only where one
-// fails.
+// leaves doubt; the one on which most tiles agree counts.
 TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImage& frame) {
   const auto shift = global_shift.Next(frame);
   const Eigen::Matrix3d previous_from_reference = InverseHomography(reference_from_previous);
@@ -73,7 +75,9 @@ TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImag
     if (measurement.quality < best.quality || measurement.inliers > best.inliers) {
       best = measurement;
     }
-    return best.quality == RegistrationQuality::kValid;
+    // Few tiles that agree may have settled on something that is not the ground.
+    return best.quality == RegistrationQuality::kValid &&
+           best.inliers >= kUncontestedShare * best.tiles;
   };
   if (shift) {
     if (attempt(WithCentreShift(last_frame_from_previous, *shift, width, height))) return best;

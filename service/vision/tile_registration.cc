@@ -153,12 +153,13 @@ TileMeasurement TileRegistration::MeasureOnce(
   return measurement;
 }
 
-// Tiles see the same ground while the prediction is right to a fraction of their side, and their
-// peaks stay sharp while the ground in them moves by less than a pixel against their centre.
+// Tiles see the same ground, and their windows pull the shift little towards 0, while the
+// prediction is right to a small fraction of their side; their peaks stay sharp while the ground in
+// them moves by a fraction of a pixel against their centre.
 bool TileRegistration::NeedsSecondPass(const Eigen::Matrix3d& predicted_frame_from_reference,
                                        const Eigen::Matrix3d& reference_from_frame) const {
-  constexpr double kMaxShiftShare = 0.125;
-  constexpr double kMaxSmearPx = 0.75;
+  constexpr double kMaxShiftShare = 0.05;
+  constexpr double kMaxSmearPx = 0.3;
   const auto& settings = correlation_->settings();
   const Eigen::Matrix3d residual = reference_from_frame * predicted_frame_from_reference;
   const Eigen::Vector2d half(0.5 * settings.tile_width, 0.5 * settings.tile_height);

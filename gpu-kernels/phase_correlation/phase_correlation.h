@@ -82,10 +82,9 @@ class TileSpectra {
 // transform    pixel x of a tile is the picture at picture_from_grid(origin + x), bilinear; samples
 //              outside the picture count as the tile's mean. The window-weighted mean is taken off
 //              before windowing.
-// sub-pixel    a quadratic in x, y and xy through the logarithms of the samples about the peak,
-// which
-//              peaks of any direction need, within +-1 px; else eq. 2.19 along each axis; where a
-//              neighbour is not positive, a parabola through the values, within +-0.5 px (thesis
+// sub-pixel    a quadratic in x, y and xy through the logarithms of the samples about the peak, as
+//              peaks of any direction need it, within +-1 px; else eq. 2.19 along each axis; where
+//              a neighbour is not positive, a parabola through the values, within +-0.5 px (thesis
 //              errata: never NaN).
 // twins        valid flags agree except at thresholds; offsets of valid peaks within 0.02 px.
 // errors       settings out of range, spectra of another operator: std::invalid_argument

@@ -10,8 +10,6 @@
 namespace windhover {
 namespace {
 
-constexpr int kMinimalMatches = 4;
-
 // Moves the points' centroid to the origin and their RMS distance from it to sqrt(2).
 struct Normalisation {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();

@@ -14,6 +14,9 @@ namespace windhover {
 
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
+// A homography is determined by this many points, and checked by none of them.
+inline constexpr int kMinimalMatches = 4;
+
 // One point seen in both pictures, px.
 struct PointMatch {
   Eigen::Vector2d x_in_reference = Eigen::Vector2d::Zero();

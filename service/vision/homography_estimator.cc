@@ -11,8 +11,6 @@
 namespace windhover {
 namespace {
 
-constexpr int kMinimalMatches = 4;
-
 double TwiceArea(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }

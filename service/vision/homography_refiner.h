@@ -27,7 +27,6 @@ struct HomographyFit {
 // The scale s falls from `first_scale_px` to twice the matches' own scatter, so that among ground
 // and things that stand out of it, which all agree within a pixel, the densest group, the ground,
 // wins (Black and Rangarajan 1996: graduated non-convexity). An infinite scale weighs all alike.
-//
 class HomographyRefiner {
  public:
   HomographyRefiner(int frame_width, int frame_height);

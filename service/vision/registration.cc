@@ -72,7 +72,8 @@ TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImag
   const auto attempt = [&](const Eigen::Matrix3d& frame_from_previous) {
     const TileMeasurement measurement =
         tiles.Measure(*reference, frame, frame_from_previous * previous_from_reference);
-    if (measurement.quality < best.quality || measurement.inliers > best.inliers) {
+    if (measurement.quality < best.quality ||
+        (measurement.quality == best.quality && measurement.inliers > best.inliers)) {
       best = measurement;
     }
     // Few tiles that agree may have settled on something that is not the ground.

@@ -11,9 +11,8 @@
 namespace windhover {
 namespace {
 
-// Four matches determine a homography and leave nothing to check it, so that layouts of four tiles
-// come back as degraded at best.
-constexpr int kMinimalMatches = 4;
+// Up to here the minimal matches will do; nothing checks those, so that they make a degraded result
+// at best.
 constexpr int kFewTiles = 5;
 // Below this share of the tiles, agreement is not told from chance.
 constexpr double kMinInlierShareOfTiles = 0.2;

@@ -30,7 +30,7 @@ enum class Fault : std::uint8_t {
   kBlack,     // the frame shows nothing
   kMirrored,  // the frame is mirrored: alike in all but geometry
   kBeyond,    // turned by 60 to 180 degrees and magnified by 1.6 to 2.5
-  kBlurred,   // the frame is blurred by 8 to 15 px
+  kBlurred,   // after a small motion, the frame is blurred by 8 to 15 px
 };
 inline constexpr Fault kFaults[] = {Fault::kCut, Fault::kBlack, Fault::kMirrored, Fault::kBeyond,
                                     Fault::kBlurred};

@@ -142,7 +142,8 @@ class TileSpectraCpu : public TileSpectra {
       : owner_(owner),
         floats_per_tile_(floats_per_tile),
         values_(AllocateFloats(tiles * floats_per_tile)),
-        coverage_(tiles, 0.0F) {
+        coverage_(tiles, 0.0F),
+        shifts_(tiles) {
     std::memset(values_.get(), 0, tiles * floats_per_tile * sizeof(float));
   }
 
@@ -150,12 +151,15 @@ class TileSpectraCpu : public TileSpectra {
   float* spectrum(std::size_t tile) const { return values_.get() + tile * floats_per_tile_; }
   float& coverage(std::size_t tile) { return coverage_[tile]; }
   float coverage(std::size_t tile) const { return coverage_[tile]; }
+  TileShift& shift(std::size_t tile) { return shifts_[tile]; }
+  const TileShift& shift(std::size_t tile) const { return shifts_[tile]; }
 
  private:
   const PhaseCorrelationCpu* owner_;
   std::size_t floats_per_tile_;
   FloatBuffer values_;
   std::vector<float> coverage_;
+  std::vector<TileShift> shifts_;
 };
 
 class PhaseCorrelationCpu : public PhaseCorrelation {
@@ -199,9 +203,10 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
     MakeWarpCoefficients(picture_from_grid);  // refuses what is not finite
     const auto mapped = picture.Read();
     for (std::size_t i = 0; i < settings_.tiles.size(); ++i) {
-      const TileOrigin& origin = settings_.tiles[i];
-      own.coverage(i) =
-          FillTile(mapped, MakeWarpCoefficients(WithOrigin(picture_from_grid, origin.x, origin.y)));
+      const TileSampling sampling = SampleTileAt(picture_from_grid, settings_.tiles[i],
+                                                 tables_.tile_width, tables_.tile_height);
+      own.shift(i) = sampling.shift;
+      own.coverage(i) = FillTile(mapped, sampling.picture_from_tile);
       fftwf_execute_dft_r2c(forward_.get(), tile_.get(), AsComplex(own.spectrum(i)));
     }
   }
@@ -219,6 +224,8 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
       fftwf_execute_dft_c2r(inverse_.get(), AsComplex(spectrum_.get()), tile_.get());
       peaks[i] =
           MeasurePeak(tables_, FindPeak(), own_reference.coverage(i), own_current.coverage(i));
+      peaks[i].dx += own_current.shift(i).dx - own_reference.shift(i).dx;
+      peaks[i].dy += own_current.shift(i).dy - own_reference.shift(i).dy;
     }
   }
 

@@ -86,13 +86,17 @@ class PhaseCorrelationOpenCl;
 
 class TileSpectraOpenCl : public TileSpectra {
  public:
-  TileSpectraOpenCl(const PhaseCorrelationOpenCl* owner, std::unique_ptr<Buffer> spectra_memory,
-                    std::unique_ptr<Buffer> coverage_memory)
-      : owner(owner), spectra(std::move(spectra_memory)), coverage(std::move(coverage_memory)) {}
+  TileSpectraOpenCl(const PhaseCorrelationOpenCl* owner, std::size_t tiles,
+                    std::unique_ptr<Buffer> spectra_memory, std::unique_ptr<Buffer> coverage_memory)
+      : owner(owner),
+        spectra(std::move(spectra_memory)),
+        coverage(std::move(coverage_memory)),
+        shifts(tiles) {}
 
   const PhaseCorrelationOpenCl* const owner;
   const std::unique_ptr<Buffer> spectra;
   const std::unique_ptr<Buffer> coverage;
+  std::vector<TileShift> shifts;
 };
 
 class PhaseCorrelationOpenCl : public PhaseCorrelation {
@@ -127,8 +131,9 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
   const PhaseCorrelationSettings& settings() const override { return settings_; }
 
   std::unique_ptr<TileSpectra> MakeSpectra() const override {
-    auto spectra = std::make_unique<TileSpectraOpenCl>(
-        this, MakeFloats(*context_, pairs_ * 2 * samples_), MakeFloats(*context_, 2 * pairs_));
+    auto spectra = std::make_unique<TileSpectraOpenCl>(this, settings_.tiles.size(),
+                                                       MakeFloats(*context_, pairs_ * 2 * samples_),
+                                                       MakeFloats(*context_, 2 * pairs_));
     const auto clear = [](Buffer& buffer) {
       std::byte* bytes = buffer.Map(Access::kWrite);
       std::fill_n(bytes, buffer.size_bytes(), std::byte{0});
@@ -141,14 +146,15 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
 
   void Transform(const GrayImage& picture, const Matrix3& picture_from_grid,
                  TileSpectra& spectra) override {
-    const TileSpectraOpenCl& own = Own(spectra);
+    auto& own = Own<TileSpectraOpenCl>(spectra);
     if (picture.empty()) throw std::invalid_argument("phase correlation: the picture is empty");
     MakeWarpCoefficients(picture_from_grid);  // refuses what is not finite
     for (std::size_t i = 0; i < settings_.tiles.size(); ++i) {
-      const TileOrigin& origin = settings_.tiles[i];
-      const WarpCoefficients from_tile =
-          MakeWarpCoefficients(WithOrigin(picture_from_grid, origin.x, origin.y));
-      std::copy(from_tile.begin(), from_tile.end(), host_from_tile_.begin() + 9 * i);
+      const TileSampling sampling = SampleTileAt(picture_from_grid, settings_.tiles[i],
+                                                 tables_.tile_width, tables_.tile_height);
+      std::copy(sampling.picture_from_tile.begin(), sampling.picture_from_tile.end(),
+                host_from_tile_.begin() + 9 * i);
+      own.shifts[i] = sampling.shift;
     }
     queue_.EnqueueWrite(*from_tile_, host_from_tile_.data(),
                         host_from_tile_.size() * sizeof(float));
@@ -167,8 +173,8 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
 
   void Correlate(const TileSpectra& reference, const TileSpectra& current,
                  std::span<TilePeak> peaks) override {
-    const TileSpectraOpenCl& own_reference = Own(reference);
-    const TileSpectraOpenCl& own_current = Own(current);
+    const auto& own_reference = Own<const TileSpectraOpenCl>(reference);
+    const auto& own_current = Own<const TileSpectraOpenCl>(current);
     if (peaks.size() != settings_.tiles.size()) {
       throw std::invalid_argument("phase correlation: there must be one peak a tile");
     }
@@ -187,6 +193,8 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
     for (std::size_t i = 0; i < peaks.size(); ++i) {
       peaks[i] =
           PeakFromRecord(std::span(host_records_).subspan(i * record_floats_, record_floats_));
+      peaks[i].dx += own_current.shifts[i].dx - own_reference.shifts[i].dx;
+      peaks[i].dy += own_current.shifts[i].dy - own_reference.shifts[i].dy;
     }
   }
 
@@ -244,8 +252,9 @@ class PhaseCorrelationOpenCl : public PhaseCorrelation {
   // One work-item for `lanes` of the columns, for all pairs of tiles.
   opencl::WorkSize ColumnsOf(int columns) const { return SizeOf(columns / layout_.lanes, pairs_); }
 
-  const TileSpectraOpenCl& Own(const TileSpectra& spectra) const {
-    const auto* own = dynamic_cast<const TileSpectraOpenCl*>(&spectra);
+  template <typename OwnSpectra, typename Spectra>
+  OwnSpectra& Own(Spectra& spectra) const {
+    auto* own = dynamic_cast<OwnSpectra*>(&spectra);
     if (own == nullptr || own->owner != this) {
       throw std::invalid_argument("phase correlation: spectra of another operator");
     }

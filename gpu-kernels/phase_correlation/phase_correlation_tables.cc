@@ -254,6 +254,33 @@ PhaseCorrelationTables::PhaseCorrelationTables(const PhaseCorrelationSettings& s
                          std::min(tile_width, tile_height) / 4);
 }
 
+TileSampling SampleTileAt(const Matrix3& picture_from_grid, const TileOrigin& origin,
+                          int tile_width, int tile_height) {
+  Matrix3 m = WithOrigin(picture_from_grid, origin.x, origin.y);
+  const double x = tile_width / 2;
+  const double y = tile_height / 2;
+  const double w = m[6] * x + m[7] * y + m[8];
+  const double u = (m[0] * x + m[1] * y + m[2]) / w;
+  const double v = (m[3] * x + m[4] * y + m[5]) / w;
+  const double right = std::round(u) - u;
+  const double down = std::round(v) - v;
+  // The derivative of (u, v) by (x, y), which takes that step back to the tile.
+  const double a = (m[0] - u * m[6]) / w, b = (m[1] - u * m[7]) / w;
+  const double c = (m[3] - v * m[6]) / w, d = (m[4] - v * m[7]) / w;
+  const double determinant = a * d - b * c;
+  const double dx = (d * right - b * down) / determinant;
+  const double dy = (a * down - c * right) / determinant;
+  constexpr double kFurthestPx = 2.0;  // pictures that are magnified more have no fine detail
+  if (!(w > 0.0 && std::abs(dx) <= kFurthestPx && std::abs(dy) <= kFurthestPx)) {
+    return {MakeWarpCoefficients(m), {}};
+  }
+  for (int column = 0; column < 3; ++column) {
+    m[column] += right * m[6 + column];
+    m[3 + column] += down * m[6 + column];
+  }
+  return {MakeWarpCoefficients(m), {static_cast<float>(dx), static_cast<float>(dy)}};
+}
+
 TilePeak MeasurePeak(const PhaseCorrelationTables& tables, const PeakNeighbourhood& peak,
                      float reference_coverage, float current_coverage) {
   constexpr float kRoundingVariance = 1e-6F;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gpu-kernels/phase_correlation/phase_correlation.h"
+#include "gpu-kernels/warp/warp_coefficients.h"
 
 namespace windhover {
 
@@ -50,6 +51,26 @@ struct PhaseCorrelationTables {
   int peak_radius;
 };
 
+// px, in the tile.
+struct TileShift {
+  float dx = 0.0F;
+  float dy = 0.0F;
+};
+
+// How a tile samples its picture. Bilinear interpolation shifts fine detail by up to 0.05 px,
+// towards the nearer pixel, and where a whole picture is shifted by a fraction of a pixel all tiles
+// would be wrong alike. So each tile is sampled up to half a pixel beside where it was asked for,
+// such that the pixel in its middle falls on a pixel of the picture: what turns and zooms then
+// leave of the error differs in sign from one side of the tile to the other.
+struct TileSampling {
+  WarpCoefficients picture_from_tile;
+  // What is at x in the tile that is sampled belongs at x + shift.
+  TileShift shift;
+};
+
+TileSampling SampleTileAt(const Matrix3& picture_from_grid, const TileOrigin& origin,
+                          int tile_width, int tile_height);
+
 // The neighbourhood of the highest sample of a correlation surface; the first one in row-major
 // order where several are equal.
 struct PeakNeighbourhood {
@@ -67,13 +88,11 @@ struct PeakNeighbourhood {
 // The last step of the correlation, for one tile: sub-pixel place, height, footprint, validity.
 //
 // sub-pixel   the maximum of the quadratic in x, y and xy that fits the logarithms of the 3x3
-// samples
-//             about the highest and of all above 0.7 of it, weighted with the squared sample;
-//             within
-//             +-1 px. Where that has none, or a sample of the 3x3 is not positive, for each axis
-//             with l, c, r the highest sample and its two neighbours: eq. 2.19 where all are
-//             positive, else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5; 0 where
-//             the denominator is not positive.
+//             samples about the highest and of all above 0.7 of it, weighted with the squared
+//             sample; within +-1 px. Where that has none, or a sample of the 3x3 is not positive,
+//             for each axis with l, c, r the highest sample and its two neighbours: eq. 2.19 where
+//             all are positive, else the parabola (r - l) / (4 c - 2 l - 2 r); clamped to +-0.5; 0
+//             where the denominator is not positive.
 // footprint   samples of the neighbourhood above max(3 * noise, height / 16), each weighted with
 //             its excess over that; second central moments, plus 1/12 px^2 for a sample's extent.
 // covariance  footprint moments times (noise / height)^2, plus 1e-6 px^2 on the diagonal. Agrees

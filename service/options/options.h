@@ -40,6 +40,8 @@ struct RegistrationOptions {
   double ransac_threshold_px = 1.0;
   double min_inlier_share = 0.4;
   double max_residual_px = 1.0;
+  double max_error_px = 1.0;
+  double refine_above_px = 0.1;
   double min_overlap = 0.8;
   double min_agreement = 0.8;
 
@@ -75,6 +77,11 @@ struct RegistrationOptions {
                "valid"),
         Number("max-residual", &O::max_residual_px, 0.05, 20.0, "px",
                "RMS distance of the inliers from the homography above which it is degraded"),
+        Number("max-error", &O::max_error_px, 0.05, 100.0, "px",
+               "Expected RMS error of the frame's corners above which the homography is degraded"),
+        Number("refine-above", &O::refine_above_px, 0.0, 100.0, "px",
+               "Expected RMS error of the frame's corners above which finer tiles are matched as "
+               "well; 0 does so for every frame"),
         Number("min-overlap", &O::min_overlap, 0.3, 0.99, "",
                "Share of the frame that must lie on the anchor; below it the anchor moves on"),
         Number("min-agreement", &O::min_agreement, 0.0, 1.0, "",

@@ -68,7 +68,7 @@ struct BackgroundSubtraction::State {
   // In centre mode only; made with the first frame that has no anchor.
   RegistrationOptions registration_options;
   std::unique_ptr<TileRegistration> tiles;
-  std::unique_ptr<TileSpectra> centre_spectra;
+  TileReference centre;
 
   Pool<GrayImage> frames;
   Pool<GrayImage> grid_images;
@@ -183,12 +183,12 @@ void BackgroundSubtraction::State::RegisterThroughAnchor(std::size_t first, std:
 void BackgroundSubtraction::State::RegisterToCentre(std::size_t first, std::size_t last) {
   if (tiles == nullptr) {
     tiles = std::make_unique<TileRegistration>(*backend, width, height, registration_options);
-    centre_spectra = tiles->MakeSpectra();
+    centre = tiles->MakeReference();
   }
   grid_from_anchor.setIdentity();
   grid_from_anchor(0, 2) = margin_x;
   grid_from_anchor(1, 2) = margin_y;
-  tiles->SetReference(*held[next].gray, *centre_spectra);
+  tiles->SetReference(*held[next].gray, centre);
   ++grid;
 
   const auto place = [&](std::size_t i, const Eigen::Matrix3d& predicted_frame_from_centre) {
@@ -196,7 +196,7 @@ void BackgroundSubtraction::State::RegisterToCentre(std::size_t first, std::size
     Eigen::Matrix3d frame_from_centre = Eigen::Matrix3d::Identity();
     if (i != next) {
       const TileMeasurement measurement =
-          tiles->Measure(*centre_spectra, *frame.gray, predicted_frame_from_centre);
+          tiles->Measure(centre, *frame.gray, predicted_frame_from_centre);
       if (measurement.quality == RegistrationQuality::kLost) return predicted_frame_from_centre;
       frame_from_centre = InverseHomography(measurement.reference_from_frame);
     }

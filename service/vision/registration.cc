@@ -2,10 +2,11 @@
 #include "service/vision/registration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "service/vision/global_shift.h"
+#include "service/vision/global_motion.h"
 #include "service/vision/homography.h"
 #include "service/vision/tile_layout.h"
 #include "service/vision/tile_registration.h"
@@ -26,6 +27,11 @@ Eigen::Matrix3d WithCentreShift(const Eigen::Matrix3d& last_frame_from_previous,
   return translation * last_frame_from_previous;
 }
 
+// RMS of the four corners' distances from where they belong, px, as the covariance has it.
+double PredictedError(const TileMeasurement& measurement) {
+  return std::sqrt(measurement.corner_covariance.trace() / 4.0);
+}
+
 }  // namespace
 
 struct StreamRegistration::State {
@@ -36,8 +42,8 @@ struct StreamRegistration::State {
         height(height_in),
         options(options_in),
         tiles(*backend, width, height, options),
-        global_shift(*backend, width, height),
-        reference(tiles.MakeSpectra()) {}
+        global_motion(*backend, width, height),
+        reference(tiles.MakeReference()) {}
 
   TileMeasurement MeasureWithPredictions(const GrayImage& frame);
   void StartSegment(const GrayImage& frame, FrameRegistration& registration);
@@ -50,8 +56,8 @@ struct StreamRegistration::State {
   int height;
   RegistrationOptions options;
   TileRegistration tiles;
-  GlobalShift global_shift;
-  std::unique_ptr<TileSpectra> reference;
+  GlobalMotion global_motion;
+  TileReference reference;
 
   std::uint64_t next_frame_number = 0;
   bool has_reference = false;
@@ -64,35 +70,47 @@ struct StreamRegistration::State {
 
 // Predictions in the order of trust: the last motion with the shift that was seen, that shift
 // alone, the last motion alone. Each costs a registration, so the next is tried only where one
-// leaves doubt; the one on which most tiles agree counts.
+// leaves doubt; the one on which most tiles agree counts. Where the whole pictures do not confirm
+// it, turns and zooms are searched through, and what nothing confirms is not valid.
 TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImage& frame) {
-  const auto shift = global_shift.Next(frame);
+  const auto shift = global_motion.NextShift(frame);
   const Eigen::Matrix3d previous_from_reference = InverseHomography(reference_from_previous);
   TileMeasurement best;
   const auto attempt = [&](const Eigen::Matrix3d& frame_from_previous) {
     const TileMeasurement measurement =
-        tiles.Measure(*reference, frame, frame_from_previous * previous_from_reference);
+        tiles.Measure(reference, frame, frame_from_previous * previous_from_reference);
     if (measurement.quality < best.quality ||
         (measurement.quality == best.quality && measurement.inliers > best.inliers)) {
       best = measurement;
     }
     // Few tiles that agree may have settled on something that is not the ground.
     return best.quality == RegistrationQuality::kValid &&
-           best.inliers >= kUncontestedShare * best.tiles;
+           best.inliers >= kUncontestedShare * best.overlap * best.tiles;
+  };
+  const auto confirmed = [&] {
+    return best.quality == RegistrationQuality::kValid &&
+           global_motion.Confirms(InverseHomography(best.reference_from_frame) *
+                                  reference_from_previous);
   };
   if (shift) {
-    if (attempt(WithCentreShift(last_frame_from_previous, *shift, width, height))) return best;
+    if (attempt(WithCentreShift(last_frame_from_previous, *shift, width, height)) || confirmed()) {
+      return best;
+    }
     const bool same = last_frame_from_previous.topLeftCorner<2, 2>().isIdentity(1e-4);
     if (!same && attempt(WithCentreShift(Eigen::Matrix3d::Identity(), *shift, width, height))) {
       return best;
     }
   }
-  attempt(last_frame_from_previous);
+  if (attempt(last_frame_from_previous) || confirmed()) return best;
+  for (const Eigen::Matrix3d& frame_from_previous : global_motion.SearchTurnsAndZooms()) {
+    if (attempt(frame_from_previous) || confirmed()) return best;
+  }
+  if (best.quality == RegistrationQuality::kValid) best.quality = RegistrationQuality::kDegraded;
   return best;
 }
 
 void StreamRegistration::State::MoveReference(const GrayImage& frame, std::uint64_t frame_number) {
-  tiles.SetReference(frame, *reference);
+  tiles.SetReference(frame, reference);
   reference_number = frame_number;
   most_inliers = 0;
   reference_from_previous.setIdentity();
@@ -108,7 +126,7 @@ void StreamRegistration::State::StartSegment(const GrayImage& frame,
   if (options.reference == ReferenceMode::kAnchor) {
     registration.anchor_from_frame = Eigen::Matrix3d::Identity();
   }
-  if (!tiles.HasTexture(*reference)) registration.quality = RegistrationQuality::kLost;
+  if (!tiles.HasTexture(reference)) registration.quality = RegistrationQuality::kLost;
 }
 
 void StreamRegistration::State::Accept(const GrayImage& frame, const TileMeasurement& measurement,
@@ -152,11 +170,18 @@ FrameRegistration StreamRegistration::Register(const GrayImage& frame) {
   FrameRegistration registration;
   registration.frame_number = state.next_frame_number++;
   if (!std::exchange(state.has_reference, true)) {
-    state.global_shift.Next(frame);
+    state.global_motion.NextShift(frame);
     state.StartSegment(frame, registration);
     return registration;
   }
-  const TileMeasurement measurement = state.MeasureWithPredictions(frame);
+  TileMeasurement measurement = state.MeasureWithPredictions(frame);
+  if (PredictedError(measurement) > state.options.refine_above_px) {
+    measurement = state.tiles.Refine(measurement, state.reference, frame);
+  }
+  if (PredictedError(measurement) > state.options.max_error_px &&
+      measurement.quality == RegistrationQuality::kValid) {
+    measurement.quality = RegistrationQuality::kDegraded;
+  }
   if (measurement.quality == RegistrationQuality::kLost) {
     registration.quality = RegistrationQuality::kLost;
     state.StartSegment(frame, registration);
@@ -169,7 +194,7 @@ FrameRegistration StreamRegistration::Register(const GrayImage& frame) {
 
 void StreamRegistration::Reset() {
   state_->has_reference = false;
-  state_->global_shift.Reset();
+  state_->global_motion.Reset();
 }
 
 }  // namespace windhover

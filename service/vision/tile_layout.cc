@@ -37,10 +37,14 @@ int TileCount(int columns, int rows, int layers) {
   return columns * rows + (layers > 1 ? (columns - 1) * (rows - 1) : 0);
 }
 
+bool FitsTileLayout(int width, int height, int columns, int rows) {
+  return width >= kMinSidePx * SidesAlong(columns) && height >= kMinSidePx * SidesAlong(rows);
+}
+
 TileLayout UniformTileLayout(int width, int height, int columns, int rows, int layers) {
   const double ideal_width = width / SidesAlong(columns);
   const double ideal_height = height / SidesAlong(rows);
-  if (ideal_width < kMinSidePx || ideal_height < kMinSidePx) {
+  if (!FitsTileLayout(width, height, columns, rows)) {
     const auto needed = [](int count) {
       return std::to_string(static_cast<int>(std::ceil(kMinSidePx * SidesAlong(count))));
     };

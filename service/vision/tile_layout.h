@@ -22,6 +22,9 @@ struct TileLayout {
 // says how large the picture must be.
 TileLayout UniformTileLayout(int width, int height, int columns, int rows, int layers = 1);
 
+// Whether UniformTileLayout would not throw.
+bool FitsTileLayout(int width, int height, int columns, int rows);
+
 // How many tiles such a layout has.
 int TileCount(int columns, int rows, int layers);
 

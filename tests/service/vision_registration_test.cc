@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 
+#include "service/vision/global_motion.h"
 #include "service/vision/homography.h"
 #include "service/vision/registration.h"
 #include "service/vision/tile_layout.h"
@@ -90,6 +92,45 @@ TEST_P(StreamRegistrationTest, LargeJumpsAreFound) {
   const FrameRegistration r = registration->Register(Frame(jump));
   ASSERT_NE(r.quality, RegistrationQuality::kLost);
   EXPECT_LT(HomographyRms(r.previous_from_frame, jump, kWidth, kHeight), 0.2);
+}
+
+TEST_P(StreamRegistrationTest, TurnsAndZoomsAreFound) {
+  const auto motion = [](double degrees, double zoom) {
+    return CameraMotion(kWidth, kHeight, degrees * 3.14159265 / 180, zoom, 9, -7, 0);
+  };
+  for (const auto& [degrees, zoom] :
+       {std::pair{10.0, 1.0}, {-11.0, 1.0}, {0.0, 1.1}, {0.0, 0.91}, {8.0, 1.08}, {-7.0, 0.93}}) {
+    const auto registration = Make();
+    registration->Register(Frame(Eigen::Matrix3d::Identity()));
+    const FrameRegistration r = registration->Register(Frame(motion(degrees, zoom)));
+    ASSERT_EQ(r.quality, RegistrationQuality::kValid) << degrees << ", " << zoom;
+    EXPECT_LT(HomographyRms(r.previous_from_frame, motion(degrees, zoom), kWidth, kHeight), 0.2)
+        << degrees << ", " << zoom;
+  }
+}
+
+TEST_P(StreamRegistrationTest, WhatIsNotSureIsNotValid) {
+  options_.max_error_px = 0.05;
+  const auto strict = Make();
+  const auto second_frame = [&](double noise_sigma) {
+    strict->Reset();
+    strict->Register(Frame(Flight(0, 3.0, 0.002), noise_sigma));
+    return strict->Register(Frame(Flight(1, 3.0, 0.002), noise_sigma));
+  };
+  EXPECT_EQ(second_frame(1.0).quality, RegistrationQuality::kValid);
+  const FrameRegistration noisy = second_frame(20.0);
+  EXPECT_GT(std::sqrt(noisy.corner_covariance.trace() / 4.0), 0.05);
+  EXPECT_EQ(noisy.quality, RegistrationQuality::kDegraded);
+}
+
+TEST_P(StreamRegistrationTest, FinerTilesMakeItSurer) {
+  const auto variance = [&](double refine_above_px) {
+    options_.refine_above_px = refine_above_px;
+    const auto registration = Make();
+    registration->Register(Frame(Flight(0, 3.0, 0.002), 10.0));
+    return registration->Register(Frame(Flight(1, 3.0, 0.002), 10.0)).corner_covariance.trace();
+  };
+  EXPECT_LT(variance(0.0), 0.8 * variance(100.0));
 }
 
 TEST_P(StreamRegistrationTest, IdentityInIdentityOut) {
@@ -269,6 +310,32 @@ TEST(StreamRegistrationAnchor, MovesOnWhenParallaxSpoilsTheAgreement) {
     EXPECT_LT(HomographyRms(*r.anchor_from_frame, truth, kWidth, kHeight), 0.5) << t;
   }
   EXPECT_GE(moves, 2);
+}
+
+TEST(GlobalMotionTest, ConfirmsTheTrueMotionOnly) {
+  const auto backend = Backend::Create("cpu");
+  GlobalMotion motion(*backend, kWidth, kHeight);
+  const SyntheticGround ground;
+  GrayImage frame = backend->MakeImage<std::uint8_t>(kWidth, kHeight);
+  const Eigen::Matrix3d truth = CameraMotion(kWidth, kHeight, 0.1, 1.05, 30, -12, 0);
+  ground.Render(Eigen::Matrix3d::Identity(), 2.0, 1, frame);
+  EXPECT_FALSE(motion.NextShift(frame));
+  ground.Render(truth, 2.0, 2, frame);
+  motion.NextShift(frame);
+  const Eigen::Matrix3d frame_from_previous = InverseHomography(truth);
+  EXPECT_TRUE(motion.Confirms(frame_from_previous));
+  EXPECT_FALSE(motion.Confirms(Eigen::Matrix3d::Identity()));
+  Eigen::Matrix3d aside = Eigen::Matrix3d::Identity();
+  aside(0, 2) = 12.0;
+  EXPECT_FALSE(motion.Confirms(aside * frame_from_previous));
+
+  Eigen::Matrix3d elsewhere = Eigen::Matrix3d::Identity();
+  elsewhere.topRightCorner<2, 1>() << 4000, 7000;
+  ground.Render(elsewhere, 2.0, 3, frame);
+  motion.NextShift(frame);
+  for (const Eigen::Matrix3d& found : motion.SearchTurnsAndZooms()) {
+    EXPECT_FALSE(motion.Confirms(found));
+  }
 }
 
 TEST(TileLayoutTest, CoversThePictureWithOverlap) {

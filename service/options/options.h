@@ -41,7 +41,7 @@ struct RegistrationOptions {
   double min_inlier_share = 0.4;
   double max_residual_px = 1.0;
   double max_error_px = 1.0;
-  double refine_above_px = 0.15;
+  double refine_above_px = 0.2;
   double min_overlap = 0.8;
   double min_agreement = 0.8;
 

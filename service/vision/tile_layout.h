@@ -14,12 +14,12 @@ struct TileLayout {
   std::vector<TileOrigin> tiles;  // row by row, layer by layer
 };
 
-// A uniform grid of columns x rows tiles that overlap by about a quarter. Their sides are rounded
-// to the nearest power of two, which transforms well; the grid keeps reaching from border to
-// border, so that the overlap takes up the difference. With two layers there is also a tile of the
-// same size centred between each four neighbours: 2 x 2 tiles become the thesis' layout of 5, 4 x 4
-// its 25+. Throws OptionError where tiles would be narrower than 24 px before rounding: the text
-// says how large the picture must be.
+// A uniform grid of columns x rows tiles that would overlap by a quarter (thesis 2.4.2) if their
+// sides were not rounded to a power of two, which transforms well, rather down than up. The grid
+// keeps reaching from border to border, so that the overlap takes up the difference. With two
+// layers there is also a tile of the same size centred between each four neighbours: 2 x 2 tiles
+// become the thesis' layout of 5, 4 x 4 its 25+. Throws OptionError where tiles would be narrower
+// than 24 px before rounding: the text says how large the picture must be.
 TileLayout UniformTileLayout(int width, int height, int columns, int rows, int layers = 1);
 
 // Whether UniformTileLayout would not throw.

@@ -338,16 +338,17 @@ TEST(GlobalMotionTest, ConfirmsTheTrueMotionOnly) {
   }
 }
 
-TEST(TileLayoutTest, CoversThePictureWithOverlap) {
+// 134.7 x 101.1 px before rounding, 404.2 x 227.4 px of the large picture.
+TEST(TileLayoutTest, ReachesFromBorderToBorder) {
   const TileLayout layout = UniformTileLayout(640, 480, 6, 6);
   EXPECT_EQ(layout.tile_width, 128);
-  EXPECT_EQ(layout.tile_height, 128);
+  EXPECT_EQ(layout.tile_height, 64);
   ASSERT_EQ(layout.tiles.size(), 36);
   EXPECT_EQ(layout.tiles.front().x, 0);
   EXPECT_EQ(layout.tiles.back().x + layout.tile_width, 640);
   EXPECT_EQ(layout.tiles.back().y + layout.tile_height, 480);
   const TileLayout large = UniformTileLayout(1920, 1080, 6, 6);
-  EXPECT_EQ(large.tile_width, 512);
+  EXPECT_EQ(large.tile_width, 256);
   EXPECT_EQ(large.tile_height, 256);
 }
 

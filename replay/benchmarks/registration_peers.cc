@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/benchmarks/registration_peers.h"
 
+#include "replay/baselines/dual_registration.h"
 #include "replay/baselines/ecc_registration.h"
 #include "replay/baselines/feature_registration.h"
 #include "replay/baselines/klt_registration.h"
@@ -28,6 +29,8 @@ const std::vector<RegistrationPeerKind>& RegistrationPeerKinds() {
       {"ecc", "ECC from phase correlation", true,
        MakeEcc<EccRegistration::Start::kPhaseCorrelation>},
       {"ecc_identity", "ECC from identity", true, MakeEcc<EccRegistration::Start::kIdentity>},
+      {"dual", "dual inverse compositional from phase correlation", true,
+       []() -> Peer { return std::make_unique<DualRegistrationPeer>(); }},
       {"phase_correlate", "cv::phaseCorrelate", true,
        []() -> Peer { return std::make_unique<PhaseCorrelateRegistration>(); }},
   };

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kMainColour = "#0072b2";
 constexpr const char* kThesisColour = "#000000";
 constexpr const char* kColours[] = {"#d55e00", "#009e73", "#cc79a7", "#e69f00",
-                                    "#56b4e9", "#7a5c00", "#777777"};
+                                    "#56b4e9", "#7a5c00", "#777777", "#6a3d9a"};
 constexpr int kShapes = 6;
 
 std::string Points(double x, double y, std::initializer_list<std::pair<double, double>> offsets) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gpu-kernels/backend.h"
+#include "replay/baselines/dual_registration.h"
 #include "replay/baselines/ecc_registration.h"
 #include "replay/baselines/feature_registration.h"
 #include "replay/baselines/frame_differencing.h"
@@ -75,6 +76,9 @@ const NamedPeer kPeers[] = {
      []() -> std::unique_ptr<RegistrationPeer> {
        return std::make_unique<EccRegistration>(EccRegistration::Start::kIdentity);
      },
+     0.05},
+    {"dual",
+     []() -> std::unique_ptr<RegistrationPeer> { return std::make_unique<DualRegistrationPeer>(); },
      0.05},
 };
 
@@ -159,6 +163,18 @@ TEST(EccPeer, ReachesFurtherFromPhaseCorrelation) {
   };
   EXPECT_LT(rms(EccRegistration::Start::kPhaseCorrelation), 0.05);
   EXPECT_GT(rms(EccRegistration::Start::kIdentity), 2);
+}
+
+// As far as phase correlation does, and through another exposure.
+TEST(DualRegistrationPeer, ReachesFarUnderAnotherExposure) {
+  const Eigen::Matrix3d far = CameraMotion(kWidth, kHeight, 0.005, 1.0, 70, 30);
+  DualRegistrationPeer peer;
+  peer.Register(Picture(Eigen::Matrix3d::Identity(), 2, 1));
+  cv::Mat dark;
+  Picture(far, 2, 2).convertTo(dark, -1, 0.7, 12);
+  const std::optional<Eigen::Matrix3d> found = peer.Register(dark);
+  ASSERT_TRUE(found);
+  EXPECT_LT(HomographyRms(*found, far, kWidth, kHeight), 0.05);
 }
 
 MotionOptions Extraction(int erosion, int dilation, int min_area) {

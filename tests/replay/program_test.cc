@@ -320,7 +320,7 @@ TEST(Program, MeasuresADataset) {
   for (const char* figure :
        {"registration.rms_px.01", "registration.gap10_rms_px.01", "peer.klt.rms_px.01",
         "peer.orb.rms_px.01", "peer.sift.rms_px.01", "peer.akaze.rms_px.01", "peer.ecc.rms_px.01",
-        "peer.phase_correlate.rms_px.01", "registration.first_frame_s.warm",
+        "peer.dual.rms_px.01", "peer.phase_correlate.rms_px.01", "registration.first_frame_s.warm",
         "registration.table_2_2"}) {
     EXPECT_THAT(registration, HasSubstr('"' + std::string(figure) + '"'));
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/vision/block_residuals.h"
 
+#include <cstring>
+
 #include "gpu-kernels/multiversion.h"
 
 namespace windhover {
@@ -47,49 +49,69 @@ struct ColumnSums {
   float yvve[kBlockSide] = {};  // gradient_y v^2 e
 };
 
-// The blocks' residuals by columns. A block lies on the frame wholly or not at all, so that its
-// pixels need no test.
+// Pixel values of the frame at the places of one row of the block, linearly interpolated.
+struct RowOfFrame {
+  float values[kBlockSide];
+};
+
+inline RowOfFrame SampleRow(const ReferenceBlock& block, int j, const Warping& warping,
+                            const float* frame, int stride) {
+  const double* m = warping.m;
+  const double x = block.x;
+  const double y = block.y + j;
+  const auto u0 = static_cast<float>(m[0] * x + m[1] * y + m[2]);
+  const auto v0 = static_cast<float>(m[3] * x + m[4] * y + m[5]);
+  const auto w0 = static_cast<float>(m[6] * x + m[7] * y + m[8]);
+  const auto u_step = static_cast<float>(m[0]);
+  const auto v_step = static_cast<float>(m[3]);
+  const auto w_step = static_cast<float>(m[6]);
+  int at[kBlockSide];
+  float fraction_x[kBlockSide];
+  float fraction_y[kBlockSide];
+  for (int i = 0; i < kBlockSide; ++i) {
+    const auto step = static_cast<float>(i);
+    const float inverse = 1.0F / (w0 + w_step * step);
+    const float u = (u0 + u_step * step) * inverse;
+    const float v = (v0 + v_step * step) * inverse;
+    const int left = static_cast<int>(u);
+    const int top = static_cast<int>(v);
+    fraction_x[i] = u - static_cast<float>(left);
+    fraction_y[i] = v - static_cast<float>(top);
+    at[i] = top * stride + left;
+  }
+  // Pixels side by side are fetched together.
+  float upper[2 * kBlockSide];
+  float lower[2 * kBlockSide];
+  for (int i = 0; i < kBlockSide; ++i) {
+    std::memcpy(upper + 2 * i, frame + at[i], 2 * sizeof(float));
+    std::memcpy(lower + 2 * i, frame + at[i] + stride, 2 * sizeof(float));
+  }
+  RowOfFrame row;
+  for (int i = 0; i < kBlockSide; ++i) {
+    const float above = upper[2 * i] + fraction_x[i] * (upper[2 * i + 1] - upper[2 * i]);
+    const float below = lower[2 * i] + fraction_x[i] * (lower[2 * i + 1] - lower[2 * i]);
+    row.values[i] = above + fraction_y[i] * (below - above);
+  }
+  return row;
+}
+
+// A block's residuals by columns. It lies on the frame wholly or not at all, so that its pixels
+// need no test.
 WINDHOVER_MULTIVERSION
 void SumColumns(const ReferenceBlock& block, const Warping& warping, const float* frame, int stride,
-                float v0, float v_step, ColumnSums& sums) {
-  const double* m = warping.m;
-  const auto u_step = static_cast<float>(m[0]);
-  const auto v_of_x = static_cast<float>(m[3]);
-  const auto w_step = static_cast<float>(m[6]);
+                float v_first, float v_per_row, ColumnSums* result) {
+  ColumnSums sums;
   for (int j = 0; j < kBlockSide; ++j) {
-    const double x = block.x;
-    const double y = block.y + j;
-    const auto u0 = static_cast<float>(m[0] * x + m[1] * y + m[2]);
-    const auto t0 = static_cast<float>(m[3] * x + m[4] * y + m[5]);
-    const auto w0 = static_cast<float>(m[6] * x + m[7] * y + m[8]);
-    const float v = v0 + v_step * static_cast<float>(j);
+    const RowOfFrame row = SampleRow(block, j, warping, frame, stride);
+    const float v = v_first + v_per_row * static_cast<float>(j);
     const float* const gradient_x = block.gradient_x.data() + j * kBlockSide;
     const float* const gradient_y = block.gradient_y.data() + j * kBlockSide;
     const float* const value = block.value.data() + j * kBlockSide;
     const float* const use = block.use.data() + j * kBlockSide;
-    float interpolated[kBlockSide];
     for (int i = 0; i < kBlockSide; ++i) {
-      const auto step = static_cast<float>(i);
-      const float inverse = 1.0F / (w0 + w_step * step);
-      const float px = (u0 + u_step * step) * inverse;
-      const float py = (t0 + v_of_x * step) * inverse;
-      const int left = static_cast<int>(px);
-      const int top = static_cast<int>(py);
-      const float fx = px - static_cast<float>(left);
-      const float fy = py - static_cast<float>(top);
-      const int at = top * stride + left;
-      const float a = frame[at];
-      const float b = frame[at + 1];
-      const float c = frame[at + stride];
-      const float d = frame[at + stride + 1];
-      const float above = a + fx * (b - a);
-      const float below = c + fx * (d - c);
-      interpolated[i] = above + fy * (below - above);
-    }
-    for (int i = 0; i < kBlockSide; ++i) {
-      const bool clipped = (interpolated[i] <= kDarkest) | (interpolated[i] >= kBrightest);
+      const bool clipped = (row.values[i] <= kDarkest) | (row.values[i] >= kBrightest);
       const float seen = clipped ? 0.0F : use[i];
-      const float e = seen * (warping.gain * interpolated[i] + warping.bias - value[i]);
+      const float e = seen * (warping.gain * row.values[i] + warping.bias - value[i]);
       const float xe = gradient_x[i] * e;
       const float ye = gradient_y[i] * e;
       sums.e[i] += e;
@@ -103,6 +125,7 @@ void SumColumns(const ReferenceBlock& block, const Warping& warping, const float
       sums.yvve[i] += v * v * ye;
     }
   }
+  *result = sums;
 }
 
 BlockResidual AddColumns(const ColumnSums& sums, float u0, float u_step) {
@@ -145,7 +168,7 @@ void ComputeResiduals(const ReferenceBlocks& reference, const FloatPicture& fram
     const auto u0 = static_cast<float>((block.x - scaled.centre_x) / scaled.px_per_unit);
     const auto v0 = static_cast<float>((block.y - scaled.centre_y) / scaled.px_per_unit);
     ColumnSums sums;
-    SumColumns(block, warping, frame.values.data(), frame.width, v0, step, sums);
+    SumColumns(block, warping, frame.values.data(), frame.width, v0, step, &sums);
     residuals[i] = AddColumns(sums, u0, step);
   }
 }

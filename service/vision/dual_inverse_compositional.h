@@ -16,7 +16,7 @@ namespace windhover {
 
 struct DualInverseCompositionalOptions {
   int most_iterations = 20;       // at each resolution
-  double convergence_px = 0.004;  // largest move of a corner by a step at which it has converged
+  double convergence_px = 0.008;  // largest move of a corner by a step at which it has converged
   double min_overlap = 0.25;      // share of the reference that must lie on the frame
   double min_explained = 0.2;     // share of the reference's variance that the frame must explain
 };

@@ -12,8 +12,8 @@ using Vector55d = Eigen::Matrix<double, kDualProducts, 1>;
 
 // Mean squared residual of a block over that of noise and of texture that lies a little off.
 float ResidualRatio(const ReferenceBlock& block, const BlockResidual& residual) {
-  constexpr float kNoise = 2.0F;    // grey levels
-  constexpr float kOffset = 0.25F;  // px
+  constexpr float kNoise = 2.0F;   // grey levels
+  constexpr float kOffset = 0.1F;  // px
   const float expected = kNoise * kNoise + kOffset * kOffset * block.squared_slope;
   return residual.squared / (residual.pixels * expected);
 }
@@ -39,7 +39,7 @@ float MedianRatio(const ReferenceBlocks& reference, std::span<const BlockResidua
 
 DualEquations WeighBlocks(const ReferenceBlocks& reference,
                           std::span<const BlockResidual> residuals, std::vector<float>& ratios) {
-  constexpr float kMediansAtHalfRoot = 3.0F;
+  constexpr float kMediansAtHalfRoot = 2.0F;
   const float scale = kMediansAtHalfRoot * MedianRatio(reference, residuals, ratios);
   DualEquations equations;
   equations.gradient.setZero();

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kMargin = 1;  // px, that the gradient needs
 
+WINDHOVER_MULTIVERSION
 void FillPixels(const FloatPicture& picture, std::span<const std::uint8_t> use,
                 const ScaledCoordinates& scaled, ReferenceBlock& block) {
   const auto slope = static_cast<float>(0.5 * scaled.px_per_unit);

@@ -109,8 +109,8 @@ void SumColumns(const ReferenceBlock& block, const Warping& warping, const float
     const float* const value = block.value.data() + j * kBlockSide;
     const float* const use = block.use.data() + j * kBlockSide;
     for (int i = 0; i < kBlockSide; ++i) {
-      const bool clipped = (row.values[i] <= kDarkest) | (row.values[i] >= kBrightest);
-      const float seen = clipped ? 0.0F : use[i];
+      const bool shown = row.values[i] > kDarkest && row.values[i] < kBrightest;
+      const float seen = shown ? use[i] : 0.0F;
       const float e = seen * (warping.gain * row.values[i] + warping.bias - value[i]);
       const float xe = gradient_x[i] * e;
       const float ye = gradient_y[i] * e;

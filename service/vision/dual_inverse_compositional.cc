@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -39,36 +38,6 @@ Eigen::Matrix3d PictureFromLevel(int level) {
   return Eigen::Vector3d(factor, factor, 1.0).asDiagonal();
 }
 
-void ReadMask(const GrayImage* mask, std::vector<std::uint8_t>& use) {
-  use.clear();
-  if (mask == nullptr) return;
-  const auto pixels = mask->Read();
-  for (int y = 0; y < pixels.height(); ++y) {
-    use.insert(use.end(), pixels.row(y), pixels.row(y) + pixels.width());
-  }
-}
-
-// Halves a mask in place, as SmoothPyramid does a picture: a pixel takes part where all neighbours
-// do of the one that it is taken from.
-void HalveMask(int width, int height, std::vector<std::uint8_t>& use) {
-  if (use.empty()) return;
-  const int half_width = (width + 1) / 2;
-  const int half_height = (height + 1) / 2;
-  std::vector<std::uint8_t> half(static_cast<std::size_t>(half_width) * half_height);
-  for (int y = 0; y < half_height; ++y) {
-    for (int x = 0; x < half_width; ++x) {
-      bool all = true;
-      for (int v = std::max(0, 2 * y - 1); v <= std::min(height - 1, 2 * y + 1); ++v) {
-        for (int u = std::max(0, 2 * x - 1); u <= std::min(width - 1, 2 * x + 1); ++u) {
-          all = all && use[static_cast<std::size_t>(v) * width + u] != 0;
-        }
-      }
-      half[static_cast<std::size_t>(y) * half_width + x] = all ? 1 : 0;
-    }
-  }
-  use.swap(half);
-}
-
 // Largest distance by which the warp moves a corner of the picture, px.
 double CornerMove(const Eigen::Matrix3d& warp, int width, int height) {
   double most = 0.0;
@@ -101,11 +70,9 @@ void DualInverseCompositional::SetReference(const GrayImage& picture, const Gray
   const int levels = LevelCount(picture.width(), picture.height());
   reference_pyramid_.Build(picture, levels);
   reference_.resize(levels);
-  ReadMask(mask, use_);
+  mask_pyramid_.Build(mask, levels);
   for (int level = 0; level < levels; ++level) {
-    const FloatPicture& smooth = reference_pyramid_.level(level);
-    CutIntoBlocks(smooth, use_, reference_[level]);
-    HalveMask(smooth.width, smooth.height, use_);
+    CutIntoBlocks(reference_pyramid_.level(level), mask_pyramid_.level(level), reference_[level]);
   }
 }
 
@@ -170,7 +137,7 @@ DualRegistration DualInverseCompositional::Register(
   if (reference_.empty()) throw std::logic_error("a frame comes before the reference");
   CheckSize(frame, "a frame");
   const Eigen::Matrix3d inverse = initial_reference_from_frame.inverse();
-  if (!inverse.allFinite() || std::abs(inverse(2, 2)) == 0.0) {
+  if (!inverse.allFinite() || inverse(2, 2) == 0.0 || initial_reference_from_frame(2, 2) == 0.0) {
     throw std::invalid_argument("the start of a registration is no homography");
   }
   if (!(initial_photometry.gain > 0.0) || !std::isfinite(initial_photometry.gain) ||

@@ -8,6 +8,7 @@
 #include "gpu-kernels/image.h"
 #include "service/vision/block_residuals.h"
 #include "service/vision/dual_step.h"
+#include "service/vision/mask_pyramid.h"
 #include "service/vision/photometry.h"
 #include "service/vision/reference_blocks.h"
 #include "service/vision/smooth_pyramid.h"
@@ -59,8 +60,9 @@ class DualInverseCompositional {
  public:
   explicit DualInverseCompositional(const DualInverseCompositionalOptions& options = {});
 
-  // `mask`, of the picture's size, is 0 where the reference does not take part. Throws
-  // std::invalid_argument for sides under 32 px and where the sizes differ.
+  // `mask`, of the picture's size, is 0 where the reference does not take part; around it the
+  // pixels do not either that the smoothing would mix with it. Throws std::invalid_argument for
+  // sides under 32 px and where the sizes differ.
   void SetReference(const GrayImage& picture, const GrayImage* mask = nullptr);
 
   // The frame may have another size than the reference. Throws std::invalid_argument for sides
@@ -92,7 +94,7 @@ class DualInverseCompositional {
   std::vector<ReferenceBlocks> reference_;  // one a level, the finest first
   SmoothPyramid reference_pyramid_;
   SmoothPyramid frame_pyramid_;
-  std::vector<std::uint8_t> use_;
+  MaskPyramid mask_pyramid_;
   std::vector<BlockResidual> residuals_;
   std::vector<float> ratios_;
 };

@@ -108,8 +108,8 @@ bool HomographyEstimator::Ransac(std::span<const PointMatch> matches, Eigen::Mat
     const double clean = std::pow(static_cast<double>(inliers) / count, 4);
     if (clean >= 1.0 - 1e-9) break;
     if (clean > 1e-9) {
-      iterations =
-          std::min<int>(iterations, std::max(20.0, std::ceil(std::log(1e-3) / std::log1p(-clean))));
+      const double enough = std::ceil(std::log(1e-3) / std::log1p(-clean));  // may pass any int
+      iterations = static_cast<int>(std::min<double>(iterations, std::max(20.0, enough)));
     }
   }
   return std::isfinite(best_score);

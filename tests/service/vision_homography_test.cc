@@ -144,6 +144,25 @@ TEST(HomographyEstimatorTest, MismatchesDoNotMoveTheResult) {
   }
 }
 
+TEST(HomographyEstimatorTest, AFirstSampleOfMismatchesDoesNotEndTheSearch) {
+  // The homography of four matches that agree with nothing else asks for billions of samples.
+  HomographyEstimator estimator(kWidth, kHeight, {.max_ransac_iterations = 1000});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(0, kWidth - 1);
+  std::uniform_real_distribution<double> y(0, kHeight - 1);
+  for (const int wrong : {200, 350, 500}) {
+    std::vector<PointMatch> matches(700);
+    for (int i = 0; i < 700; ++i) {
+      matches[i].x_in_frame << x(random), y(random);
+      matches[i].x_in_reference = Project(kMotions[2], matches[i].x_in_frame);
+      if (i < wrong) matches[i].x_in_reference = {x(random), y(random)};
+    }
+    const auto estimate = estimator.Estimate(matches);
+    ASSERT_TRUE(estimate.has_value()) << wrong;
+    EXPECT_LT(Rms(estimate->reference_from_frame, kMotions[2]), 0.01) << wrong;
+  }
+}
+
 TEST(HomographyEstimatorTest, UncertainMatchesWeighLess) {
   // A third of the matches is blurred along x and lies off by 0.8 px there: the covariance-weighted
   // estimate follows the others, one that believes all alike does not (thesis 2.4.3).

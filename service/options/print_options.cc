@@ -4,6 +4,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "service/options/feature_options.h"
 #include "service/options/options.h"
 #include "service/options/overlay_options.h"
 #include "service/options/publish_options.h"
@@ -99,6 +100,9 @@ int main() {
   PrintTable<RegistrationOptions>(
       "Registration",
       "Of `whregister`; of `whbackground`, too, which registers in `reference=centre`.");
+  PrintTable<FeatureRegistrationOptions>(
+      "Registration by features",
+      "Of `FeatureRegistration` in `service/vision`, for programs: no element has them.");
   PrintTable<BackgroundOptions>("Background", "Of `whbackground`.");
   PrintTable<MotionOptions>("Motion", "Of `whmotion`.");
   PrintTable<PublishOptions>("Publishing", "Of `whpublish`.");

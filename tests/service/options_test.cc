@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "service/options/feature_options.h"
 #include "service/options/overlay_options.h"
 #include "service/options/publish_options.h"
 
@@ -21,8 +22,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-using AllOptions = std::tuple<DeviceOptions, RegistrationOptions, BackgroundOptions, MotionOptions,
-                              PublishOptions, OverlayOptions>;
+using AllOptions = std::tuple<DeviceOptions, RegistrationOptions, FeatureRegistrationOptions,
+                              BackgroundOptions, MotionOptions, PublishOptions, OverlayOptions>;
 
 template <typename Visit>
 void ForEachStruct(Visit&& visit) {

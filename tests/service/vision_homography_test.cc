@@ -144,6 +144,55 @@ TEST(HomographyEstimatorTest, MismatchesDoNotMoveTheResult) {
   }
 }
 
+TEST(HomographyEstimatorTest, LeastMedianNeedsNoDistance) {
+  // The distance asked for lets everything pass: it is taken from the matches themselves.
+  HomographyEstimator estimator(kWidth, kHeight,
+                                {.robust = RobustEstimator::kLmeds, .ransac_threshold_px = 500});
+  Noise noise(0.2);
+  for (const int mismatches : {0, 8, 14}) {
+    auto matches = TileMatches(kMotions[2]);
+    for (PointMatch& match : matches) match.x_in_reference += noise();
+    for (int i = 0; i < mismatches; ++i) {
+      matches[(5 * i) % 36].x_in_reference += Eigen::Vector2d(20 + 9 * i, 13 * (i % 5) - 30);
+    }
+    const auto estimate = estimator.Estimate(matches);
+    ASSERT_TRUE(estimate.has_value());
+    EXPECT_LT(Rms(estimate->reference_from_frame, kMotions[2]), 0.4) << mismatches;
+    EXPECT_LE(estimate->inliers, 36 - mismatches);
+    EXPECT_GE(estimate->inliers, 30 - mismatches);
+    for (int i = 0; i < mismatches; ++i) EXPECT_EQ(estimator.inliers()[(5 * i) % 36], 0);
+  }
+}
+
+TEST(HomographyEstimatorTest, LeastMedianKeepsToTheDistance) {
+  HomographyEstimator estimator(kWidth, kHeight,
+                                {.robust = RobustEstimator::kLmeds, .ransac_threshold_px = 0.5});
+  auto matches = TileMatches(kMotions[1]);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> anywhere(-200, 200);
+  for (PointMatch& match : matches) {
+    match.x_in_reference += Eigen::Vector2d(anywhere(random), anywhere(random));
+  }
+  const auto estimate = estimator.Estimate(matches);
+  EXPECT_LT(estimate ? estimate->inliers : 0, 9);
+  EXPECT_FALSE(estimator.Estimate(std::span(matches).first(3)).has_value());
+  EXPECT_FALSE(estimator.Estimate({}).has_value());
+}
+
+TEST(HomographyEstimatorTest, EstimatesFromWhatIsKnownRoughly) {
+  HomographyEstimator estimator(kWidth, kHeight, {.ransac_threshold_px = 3});
+  auto matches = TileMatches(kMotions[3]);
+  matches[4].x_in_reference.x() += 40;
+  Eigen::Matrix3d rough = kMotions[3];
+  rough(0, 2) += 1.5;
+  const auto estimate = estimator.EstimateFrom(rough, matches);
+  ASSERT_TRUE(estimate.has_value());
+  EXPECT_LT(Rms(estimate->reference_from_frame, kMotions[3]), 1e-3);
+  EXPECT_EQ(estimate->inliers, 35);
+  EXPECT_EQ(estimator.inliers()[4], 0);
+  EXPECT_FALSE(estimator.EstimateFrom(rough, {}).has_value());
+}
+
 TEST(HomographyEstimatorTest, AFirstSampleOfMismatchesDoesNotEndTheSearch) {
   // The homography of four matches that agree with nothing else asks for billions of samples.
   HomographyEstimator estimator(kWidth, kHeight, {.max_ransac_iterations = 1000});

@@ -51,7 +51,7 @@ class PointGrid {
  public:
   PointGrid(const PictureFeatures& features, double radius_px)
       : features_(features),
-        cell_px_(std::max(radius_px, 1.0)),
+        cell_px_(std::max(radius_px, kLeastCellPx)),
         radius_px_(radius_px),
         columns_(static_cast<int>(features.width / cell_px_) + 1),
         rows_(static_cast<int>(features.height / cell_px_) + 1),
@@ -82,6 +82,8 @@ class PointGrid {
   }
 
  private:
+  static constexpr double kLeastCellPx = 8.0;  // smaller ones are empty mostly
+
   const PictureFeatures& features_;
   double cell_px_;
   double radius_px_;

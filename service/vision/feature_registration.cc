@@ -155,18 +155,23 @@ FeatureRegistrationResult FeatureRegistration::Register(const PictureFeatures& r
                           options_.inlier_distance_px, options_.match_ratio, usual_distance);
     estimate =
         estimator.EstimateFrom(estimate->reference_from_frame, PointsOf(matches, reference, frame));
-    if (pairs == std::exchange(pairs, InlierPairs(matches, estimator.inliers()))) break;
+    auto next = InlierPairs(matches, estimator.inliers());
+    const bool settled = next == pairs;
+    pairs = std::move(next);
+    if (settled) break;
   }
+  const int inliers = static_cast<int>(pairs.size());
+  if (inliers < kLeastInliers) return Failed(Failure::kTooFewInliers, by_descriptor, inliers);
   if (!estimate ||
       !IsPlausible(estimate->reference_from_frame, reference.width, reference.height)) {
-    return Failed(Failure::kImplausibleHomography, by_descriptor, static_cast<int>(pairs.size()));
+    return Failed(Failure::kImplausibleHomography, by_descriptor, inliers);
   }
 
   FeatureRegistrationResult result;
   result.frame_from_reference = estimate->reference_from_frame;
   result.corner_covariance = estimate->corner_covariance;
   result.matches = by_descriptor;
-  result.inliers = estimate->inliers;
+  result.inliers = inliers;
   result.residual_px = estimate->residual_px;
   result.overlap = OverlapShare(result.frame_from_reference, reference.width, reference.height,
                                 frame.width, frame.height);

@@ -17,8 +17,8 @@ constexpr int kLeastSidePx = 16;
 
 // Lower than OpenCV's own: the ground may be hazy or dim. Where there is plenty, max_features
 // leaves the strongest.
-constexpr double kSiftContrast = 0.02;
-constexpr float kAkazeThreshold = 2e-4F;
+constexpr double kSiftContrast = 0.01;
+constexpr float kAkazeThreshold = 5e-5F;
 constexpr int kFastThreshold = 7;
 
 constexpr float kOrbScale = 1.2F;
@@ -64,18 +64,14 @@ Eigen::Vector2d PixelOf(const cv::KeyPoint& point, FeatureDetector detector, int
   return {point.pt.x, point.pt.y};
 }
 
-// A point is placed as exactly as the level of the pyramid that it was found on: to about this
-// share of its size, as synthetic pairs show.
+// As synthetic pairs show. ORB leaves points on whole pixels of the pyramid's level. What is
+// refined below the pixel is placed alike on all levels (eq. 2.8): large features are smeared,
+// small ones drowned in noise.
 double SigmaPx(const cv::KeyPoint& point, FeatureDetector detector) {
-  switch (detector) {
-    case FeatureDetector::kSift:
-      return 0.04 * point.size;
-    case FeatureDetector::kAkaze:
-      return 0.03 * point.size;
-    case FeatureDetector::kOrb:
-      break;
-  }
-  return 0.012 * point.size;
+  constexpr double kRefinedPx = 0.3;
+  constexpr double kWholePx = 0.4;
+  if (detector != FeatureDetector::kOrb) return kRefinedPx;
+  return kWholePx * std::pow(kOrbScale, static_cast<float>(point.octave));
 }
 
 cv::Mat View(const MappedImage<const std::uint8_t>& pixels) {

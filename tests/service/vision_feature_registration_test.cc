@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <opencv2/core/utility.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -148,8 +149,11 @@ TEST_P(FeatureDetectors, GiveTheSameToTheBit) {
   };
   const FeatureRegistrationResult first = once();
   ASSERT_EQ(first.failure, std::nullopt);
-  for (int i = 0; i < 3; ++i) {
+  const int threads_before = cv::getNumThreads();
+  for (const int threads : {1, 2, 3, 4}) {
+    cv::setNumThreads(threads);
     const FeatureRegistrationResult again = once();
+    cv::setNumThreads(threads_before);
     EXPECT_EQ(again.frame_from_reference, first.frame_from_reference);
     EXPECT_EQ(again.corner_covariance, first.corner_covariance);
     EXPECT_EQ(again.inliers, first.inliers);

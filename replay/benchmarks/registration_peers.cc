@@ -3,7 +3,7 @@
 
 #include "replay/baselines/dual_registration.h"
 #include "replay/baselines/ecc_registration.h"
-#include "replay/baselines/feature_registration.h"
+#include "replay/baselines/gold_standard_registration.h"
 #include "replay/baselines/klt_registration.h"
 #include "replay/baselines/phase_correlate_registration.h"
 
@@ -17,15 +17,25 @@ Peer MakeEcc() {
   return std::make_unique<EccRegistration>(start);
 }
 
+template <FeatureDetector detector, RobustEstimator robust = RobustEstimator::kRansac>
+Peer MakeGoldStandard() {
+  FeatureRegistrationOptions options;
+  options.detector = detector;
+  options.robust = robust;
+  return std::make_unique<GoldStandardRegistration>(options);
+}
+
 }  // namespace
 
 const std::vector<RegistrationPeerKind>& RegistrationPeerKinds() {
   static const std::vector<RegistrationPeerKind> kinds = {
       {"klt", "KLT grid + RANSAC", false,
        []() -> Peer { return std::make_unique<KltRegistration>(); }},
-      {"orb", "ORB + RANSAC", true, []() -> Peer { return MakeOrbRegistration(); }},
-      {"sift", "SIFT + RANSAC", true, []() -> Peer { return MakeSiftRegistration(); }},
-      {"akaze", "AKAZE + RANSAC", true, []() -> Peer { return MakeAkazeRegistration(); }},
+      {"sift", "gold standard, SIFT", true, MakeGoldStandard<FeatureDetector::kSift>},
+      {"sift_lmeds", "gold standard, SIFT, LMedS", true,
+       MakeGoldStandard<FeatureDetector::kSift, RobustEstimator::kLmeds>},
+      {"akaze", "gold standard, AKAZE", true, MakeGoldStandard<FeatureDetector::kAkaze>},
+      {"orb", "gold standard, ORB", true, MakeGoldStandard<FeatureDetector::kOrb>},
       {"ecc", "ECC from phase correlation", true,
        MakeEcc<EccRegistration::Start::kPhaseCorrelation>},
       {"ecc_identity", "ECC from identity", true, MakeEcc<EccRegistration::Start::kIdentity>},

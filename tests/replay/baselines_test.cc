@@ -13,8 +13,8 @@
 #include "gpu-kernels/backend.h"
 #include "replay/baselines/dual_registration.h"
 #include "replay/baselines/ecc_registration.h"
-#include "replay/baselines/feature_registration.h"
 #include "replay/baselines/frame_differencing.h"
+#include "replay/baselines/gold_standard_registration.h"
 #include "replay/baselines/klt_registration.h"
 #include "replay/baselines/phase_correlate_registration.h"
 #include "replay/baselines/stabilized_mog2.h"
@@ -51,6 +51,13 @@ cv::Mat Picture(const Eigen::Matrix3d& ground_from_frame, double noise_sigma, st
   return picture;
 }
 
+template <FeatureDetector detector>
+std::unique_ptr<RegistrationPeer> MakeGoldStandard() {
+  FeatureRegistrationOptions options;
+  options.detector = detector;
+  return std::make_unique<GoldStandardRegistration>(options);
+}
+
 struct NamedPeer {
   std::string name;
   std::unique_ptr<RegistrationPeer> (*make)();
@@ -64,9 +71,9 @@ const NamedPeer kPeers[] = {
     {"klt",
      []() -> std::unique_ptr<RegistrationPeer> { return std::make_unique<KltRegistration>(); },
      0.1},
-    {"orb", []() -> std::unique_ptr<RegistrationPeer> { return MakeOrbRegistration(); }, 1.5},
-    {"sift", []() -> std::unique_ptr<RegistrationPeer> { return MakeSiftRegistration(); }, 0.3},
-    {"akaze", []() -> std::unique_ptr<RegistrationPeer> { return MakeAkazeRegistration(); }, 0.3},
+    {"sift", MakeGoldStandard<FeatureDetector::kSift>, 0.1},
+    {"akaze", MakeGoldStandard<FeatureDetector::kAkaze>, 0.2},
+    {"orb", MakeGoldStandard<FeatureDetector::kOrb>, 0.5},
     {"ecc",
      []() -> std::unique_ptr<RegistrationPeer> {
        return std::make_unique<EccRegistration>(EccRegistration::Start::kPhaseCorrelation);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "replay/benchmarks/dataset.h"
+#include "replay/benchmarks/thesis_results.h"
 #include "replay/benchmarks/timing.h"
 #include "replay/scoring/registration_score.h"
 #include "service/vision/homography.h"
@@ -130,6 +131,23 @@ std::optional<double> NormalisedCornerError(const FrameRegistration& registratio
   return sum / dimensions;
 }
 
+std::optional<std::vector<std::string>> WindowsNoBetterThanNone(
+    const RegistrationResults& results) {
+  const auto mean_px = [&results](const ThesisWindow& window) -> std::optional<double> {
+    const auto found = results.windows.find(window.name);
+    if (found == results.windows.end()) return std::nullopt;
+    return found->second.mean_px();
+  };
+  const std::optional<double> none_px = mean_px(kThesisWindows[0]);
+  std::vector<std::string> worse;
+  for (const ThesisWindow& window : kThesisWindows) {
+    const std::optional<double> px = mean_px(window);
+    if (!none_px || !px) return std::nullopt;
+    if (window.window != WindowKind::kNone && *px >= *none_px) worse.emplace_back(window.name);
+  }
+  return worse;
+}
+
 std::vector<Figure> RegistrationFigures(const RegistrationResults& results) {
   std::vector<Figure> figures;
   for (const RegistrationContestant& contestant : results.contestants) {
@@ -137,6 +155,10 @@ std::vector<Figure> RegistrationFigures(const RegistrationResults& results) {
   }
   AddFigure(figures, "registration.flagged_bad_share", Pooled(results.flagged_bad).share());
   AddFigure(figures, "registration.flagged_good_share", Pooled(results.flagged_good).share());
+  if (const auto worse = WindowsNoBetterThanNone(results)) {
+    AddFigure(figures, "registration.windows_no_better_than_none",
+              static_cast<double>(worse->size()));
+  }
   std::vector<double> all;
   for (const auto& [noise, errors] : results.corner_errors) {
     AddFigure(figures, "registration.nees_ratio.noise_" + std::to_string(noise), Mean(errors));

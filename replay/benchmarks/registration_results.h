@@ -81,6 +81,10 @@ struct RegistrationResults {
 std::optional<double> NormalisedCornerError(const FrameRegistration& registration,
                                             const Eigen::Matrix3d& truth, int width, int height);
 
+// The thesis' finding of table 2.3 is that any window beats none. These are the windows whose mean
+// RMS is not smaller than without one; nothing where not all of them were measured.
+std::optional<std::vector<std::string>> WindowsNoBetterThanNone(const RegistrationResults& results);
+
 // Figures over the ten sequences are there only where all ten were measured.
 std::vector<Figure> RegistrationFigures(const RegistrationResults& results);
 std::vector<FigureTable> RegistrationTables(const RegistrationResults& results);

@@ -40,6 +40,7 @@ struct ThesisWindow {
   double alpha;
   double rms_px;
 };
+// The first is none.
 inline constexpr ThesisWindow kThesisWindows[] = {
     {"none", WindowKind::kNone, 0.0, 0.358},
     {"Blackman, alpha 0.0001", WindowKind::kBlackman, 0.0001, 0.234},

@@ -12,6 +12,7 @@
 
 #include "replay/benchmarks/layout_timing.h"
 #include "replay/benchmarks/registration_results.h"
+#include "replay/benchmarks/thesis_results.h"
 #include "replay/format/sequence.h"
 #include "tests/replay/benchmark_fixtures.h"
 #include "tests/service/app_process.h"
@@ -150,6 +151,29 @@ TEST(RegistrationResults, ShowWindowsOnlyWhereA4WasMeasured) {
   ASSERT_EQ(table->rows.size(), 8);
   EXPECT_EQ(table->rows[0], (Row{"none", {}, 0.358}));
   EXPECT_EQ(table->rows[2], (Row{"Blackman, alpha 0.16", 0.5, 0.23}));
+}
+
+TEST(RegistrationResults, SayWhetherEachWindowBeatsNone) {
+  RegistrationResults results = HandMade(1);
+  const auto title = [&results] {
+    return Named(RegistrationTables(results), "registration.table_2_3")->title;
+  };
+  const auto worse = [&results] {
+    return ValueOf(RegistrationFigures(results), "registration.windows_no_better_than_none");
+  };
+  EXPECT_EQ(worse(), std::nullopt);
+  results.windows["none"] = {{0.5, 0.7}, {}};
+  EXPECT_EQ(worse(), std::nullopt);
+  EXPECT_THAT(title(), Not(HasSubstr("none")));
+  for (const ThesisWindow& window : kThesisWindows) {
+    if (window.window != WindowKind::kNone) results.windows[window.name] = {{0.9, 0.2}, {}};
+  }
+  EXPECT_THAT(worse(), Optional(0));
+  EXPECT_THAT(title(), HasSubstr("each beats none, as in the thesis"));
+  results.windows["cosine"] = {{0.6, 0.6}, {}};
+  results.windows["Tukey, alpha 0.6"] = {{0.6, 0.7}, {}};
+  EXPECT_THAT(worse(), Optional(2));
+  EXPECT_THAT(title(), HasSubstr("unlike in the thesis: cosine; Tukey, alpha 0.6"));
 }
 
 TEST(RegistrationResults, ShowTimesByLayout) {

@@ -320,8 +320,9 @@ TEST(Program, MeasuresADataset) {
   for (const char* figure :
        {"registration.rms_px.01", "registration.gap10_rms_px.01", "peer.klt.rms_px.01",
         "peer.orb.rms_px.01", "peer.sift.rms_px.01", "peer.sift_lmeds.rms_px.01",
-        "peer.akaze.rms_px.01", "peer.ecc.rms_px.01", "peer.phase_correlate.rms_px.01",
-        "registration.first_frame_s.warm", "registration.table_2_2"}) {
+        "peer.akaze.rms_px.01", "peer.ecc.rms_px.01", "peer.dual.rms_px.01",
+        "peer.phase_correlate.rms_px.01", "registration.first_frame_s.warm",
+        "registration.table_2_2"}) {
     EXPECT_THAT(registration, HasSubstr('"' + std::string(figure) + '"'));
   }
   EXPECT_THAT(registration, AllOf(Not(HasSubstr("rms_px.mean")), Not(HasSubstr("reach_share")),

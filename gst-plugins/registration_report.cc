@@ -63,8 +63,9 @@ void PostRegistrationNews(GstElement* element, const RegistrationReport::News& n
       "windhover-registration", "quality", G_TYPE_STRING, NameOf(registration.quality),
       "frame-number", G_TYPE_UINT64, static_cast<guint64>(registration.frame_number), "pts",
       GST_TYPE_CLOCK_TIME, pts, "inliers", G_TYPE_INT, registration.inliers, "tiles", G_TYPE_INT,
-      registration.tiles, "residual-px", G_TYPE_DOUBLE, registration.residual_px,
-      "changes-kept-back", G_TYPE_INT, news.changes_kept_back, nullptr);
+      registration.tiles, "change", G_TYPE_STRING, NameOf(registration.change), "residual-px",
+      G_TYPE_DOUBLE, registration.residual_px, "changes-kept-back", G_TYPE_INT,
+      news.changes_kept_back, nullptr);
   gst_element_post_message(element, gst_message_new_element(GST_OBJECT(element), structure));
 }
 

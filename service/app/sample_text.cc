@@ -66,6 +66,7 @@ std::string JsonLine(const HomographySample& sample) {
   Json json = Frame("homography", sample, registration.frame_number);
   json["quality"] = Name(registration.quality);
   json["starts_segment"] = registration.starts_segment;
+  json["change"] = NameOf(registration.change);
   json["previous_from_frame"] = RowMajor<3>(registration.previous_from_frame);
   const bool anchor = registration.anchor_from_frame.has_value();
   json["anchor_from_frame"] = anchor ? RowMajor<3>(*registration.anchor_from_frame) : Json();
@@ -122,10 +123,13 @@ std::string TextLine(const HomographySample& sample) {
       (registration.previous_from_frame * centre.homogeneous()).hnormalized();
   return fmt::format(
       "{} frame {} at {}: homography {}, moved {:.2f} {:.2f} px, {} of {} tiles, residual {:.3f} "
-      "px, overlap {:.0f} %{}\n",
+      "px, overlap {:.0f} %{}{}\n",
       sample.stream, registration.frame_number, Seconds(sample.pts_ns), Name(registration.quality),
       before.x() - centre.x(), before.y() - centre.y(), registration.inliers, registration.tiles,
       registration.residual_px, 100.0 * registration.overlap,
+      registration.change == FrameChange::kSteady
+          ? ""
+          : fmt::format(", {}", NameOf(registration.change)),
       registration.starts_segment ? ", starts a segment" : "");
 }
 

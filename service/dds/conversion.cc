@@ -66,6 +66,38 @@ RegistrationQuality FromMessage(windhover_RegistrationQuality quality) {
   return RegistrationQuality::kLost;
 }
 
+windhover_FrameChange ToMessage(FrameChange change) {
+  switch (change) {
+    case FrameChange::kSteady:
+      break;
+    case FrameChange::kRepeated:
+      return windhover_REPEATED;
+    case FrameChange::kNoTexture:
+      return windhover_NO_TEXTURE;
+    case FrameChange::kCut:
+      return windhover_CUT;
+    case FrameChange::kJump:
+      return windhover_JUMP;
+  }
+  return windhover_STEADY;
+}
+
+FrameChange FromMessage(windhover_FrameChange change) {
+  switch (change) {
+    case windhover_STEADY:
+      break;
+    case windhover_REPEATED:
+      return FrameChange::kRepeated;
+    case windhover_NO_TEXTURE:
+      return FrameChange::kNoTexture;
+    case windhover_CUT:
+      return FrameChange::kCut;
+    case windhover_JUMP:
+      return FrameChange::kJump;
+  }
+  return FrameChange::kSteady;
+}
+
 }  // namespace
 
 const dds_topic_descriptor_t* HomographyDescriptor() { return &windhover_Homography_desc; }
@@ -101,6 +133,7 @@ void HomographyMessage::Set(const FrameRegistration& registration, int width, in
   message.residual_px = registration.residual_px;
   message.overlap = registration.overlap;
   message.starts_segment = registration.starts_segment;
+  message.change = ToMessage(registration.change);
 }
 
 const void* HomographyMessage::data() const { return &layout_->message; }
@@ -175,6 +208,7 @@ void Read(const void* data, HomographySample& sample) {
   registration.residual_px = message.residual_px;
   registration.overlap = message.overlap;
   registration.starts_segment = message.starts_segment;
+  registration.change = FromMessage(message.change);
 }
 
 void Read(const void* data, DetectionsSample& sample) {

@@ -44,6 +44,7 @@ GlobalMotion::GlobalMotion(Backend& backend, int width, int height)
     : factor_(ReductionFactor(width, height)),
       decimate_(backend.MakeDecimate()),
       reduced_(backend.MakeImage<std::uint8_t>(width / factor_, height / factor_)),
+      previous_reduced_(backend.MakeImage<std::uint8_t>(reduced_.width(), reduced_.height())),
       correlation_(backend.MakePhaseCorrelation(MakeSettings(reduced_.width(), reduced_.height()))),
       previous_(correlation_->MakeSpectra()),
       current_(correlation_->MakeSpectra()),
@@ -54,10 +55,12 @@ GlobalMotion::GlobalMotion(Backend& backend, int width, int height)
 }
 
 std::optional<Eigen::Vector2d> GlobalMotion::NextShift(const GrayImage& frame) {
+  std::swap(previous_reduced_, reduced_);
   decimate_->Run(frame, factor_, reduced_);
   std::swap(previous_, current_);
   correlation_->Transform(reduced_, kIdentity3, *current_);
-  if (!std::exchange(has_previous_, true)) return std::nullopt;
+  has_two_ = std::exchange(has_previous_, true);
+  if (!has_two_) return std::nullopt;
   TilePeak peak;
   correlation_->Correlate(*previous_, *current_, {&peak, 1});
   if (!peak.valid) return std::nullopt;
@@ -88,6 +91,16 @@ GlobalMotion::Candidate GlobalMotion::Try(double radians, double zoom) {
   shift.topRightCorner<2, 1>() << peak.dx, peak.dy;
   return {.frame_from_previous = full_from_reduced_ * turn * shift * reduced_from_full_,
           .clearness = peak.noise > 0.0F ? peak.height / peak.noise : 0.0F};
+}
+
+bool GlobalMotion::Repeats() const {
+  if (!has_two_) return false;
+  const auto now = reduced_.Read();
+  const auto before = previous_reduced_.Read();
+  for (int y = 0; y < now.height(); ++y) {
+    if (!std::equal(now.row(y), now.row(y) + now.width(), before.row(y))) return false;
+  }
+  return true;
 }
 
 bool GlobalMotion::Confirms(const Eigen::Matrix3d& frame_from_previous) {

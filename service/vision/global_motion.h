@@ -25,6 +25,10 @@ class GlobalMotion {
   // first frame after construction or Reset, or where there is no clear peak.
   std::optional<Eigen::Vector2d> NextShift(const GrayImage& frame);
 
+  // Whether the two frames of the last NextShift are the same picture, but for what averages out
+  // where they are reduced.
+  bool Repeats() const;
+
   // Whether the two frames of the last NextShift, laid over each other by a homography, show the
   // same: their correlation then has a clear peak at no shift, to half a pixel of the reduced
   // pictures. Of a street registered to the next one alike it peaks a street away.
@@ -53,6 +57,7 @@ class GlobalMotion {
   Eigen::Matrix3d reduced_from_full_;
   std::unique_ptr<Decimate> decimate_;
   GrayImage reduced_;
+  GrayImage previous_reduced_;
   std::unique_ptr<PhaseCorrelation> correlation_;
   std::unique_ptr<TileSpectra> previous_;
   std::unique_ptr<TileSpectra> current_;
@@ -60,6 +65,7 @@ class GlobalMotion {
   std::vector<Candidate> candidates_;
   std::array<Eigen::Matrix3d, 3> found_;
   bool has_previous_ = false;
+  bool has_two_ = false;
 };
 
 }  // namespace windhover

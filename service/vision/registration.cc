@@ -15,6 +15,7 @@ namespace windhover {
 namespace {
 
 constexpr double kUncontestedShare = 0.7;  // of the tiles
+constexpr double kJumpShare = 0.1;         // of the frame's width
 
 // The camera goes on turning and zooming as it did (`last_frame_from_previous`), but the picture's
 // centre moves by the shift that was seen.
@@ -45,7 +46,10 @@ struct StreamRegistration::State {
         global_motion(*backend, width, height),
         reference(tiles.MakeReference()) {}
 
-  TileMeasurement MeasureWithPredictions(const GrayImage& frame);
+  TileMeasurement Measure(const GrayImage& frame);
+  TileMeasurement MeasureWithPredictions(const GrayImage& frame,
+                                         const std::optional<Eigen::Vector2d>& shift);
+  bool IsJump(const Eigen::Matrix3d& frame_from_previous) const;
   void StartSegment(const GrayImage& frame, FrameRegistration& registration);
   void MoveReference(const GrayImage& frame, std::uint64_t frame_number);
   void Accept(const GrayImage& frame, const TileMeasurement& measurement,
@@ -64,6 +68,7 @@ struct StreamRegistration::State {
   // The reference picture is the anchor in anchor mode, the previous frame in centre mode.
   std::uint64_t reference_number = 0;
   int most_inliers = 0;  // of the registrations to it
+  TileMeasurement last;  // kLost where the frame before started a segment
   Eigen::Matrix3d reference_from_previous = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d last_frame_from_previous = Eigen::Matrix3d::Identity();
 };
@@ -72,8 +77,8 @@ struct StreamRegistration::State {
 // alone, the last motion alone. Each costs a registration, so the next is tried only where one
 // leaves doubt; the one on which most tiles agree counts. Where the whole pictures do not confirm
 // it, turns and zooms are searched through, and what nothing confirms is not valid.
-TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImage& frame) {
-  const auto shift = global_motion.NextShift(frame);
+TileMeasurement StreamRegistration::State::MeasureWithPredictions(
+    const GrayImage& frame, const std::optional<Eigen::Vector2d>& shift) {
   const Eigen::Matrix3d previous_from_reference = InverseHomography(reference_from_previous);
   TileMeasurement best;
   const auto attempt = [&](const Eigen::Matrix3d& frame_from_previous) {
@@ -109,6 +114,32 @@ TileMeasurement StreamRegistration::State::MeasureWithPredictions(const GrayImag
   return best;
 }
 
+TileMeasurement StreamRegistration::State::Measure(const GrayImage& frame) {
+  const auto shift = global_motion.NextShift(frame);
+  if (global_motion.Repeats() && last.quality != RegistrationQuality::kLost) {
+    // Nothing new is to be learned from it.
+    TileMeasurement measurement = last;
+    measurement.reference_from_frame = reference_from_previous;
+    return measurement;
+  }
+  TileMeasurement measurement = MeasureWithPredictions(frame, shift);
+  if (PredictedError(measurement) > options.refine_above_px) {
+    measurement = tiles.Refine(measurement, reference, frame);
+  }
+  if (PredictedError(measurement) > options.max_error_px &&
+      measurement.quality == RegistrationQuality::kValid) {
+    measurement.quality = RegistrationQuality::kDegraded;
+  }
+  return measurement;
+}
+
+bool StreamRegistration::State::IsJump(const Eigen::Matrix3d& frame_from_previous) const {
+  if (last.quality == RegistrationQuality::kLost) return false;  // no motion to go by
+  const Eigen::Vector2d centre(0.5 * (width - 1), 0.5 * (height - 1));
+  return (Project(frame_from_previous, centre) - Project(last_frame_from_previous, centre)).norm() >
+         kJumpShare * width;
+}
+
 void StreamRegistration::State::MoveReference(const GrayImage& frame, std::uint64_t frame_number) {
   tiles.SetReference(frame, reference);
   reference_number = frame_number;
@@ -126,7 +157,11 @@ void StreamRegistration::State::StartSegment(const GrayImage& frame,
   if (options.reference == ReferenceMode::kAnchor) {
     registration.anchor_from_frame = Eigen::Matrix3d::Identity();
   }
-  if (!tiles.HasTexture(reference)) registration.quality = RegistrationQuality::kLost;
+  last = {};
+  if (!tiles.HasTexture(reference)) {
+    registration.quality = RegistrationQuality::kLost;
+    registration.change = FrameChange::kNoTexture;
+  }
 }
 
 void StreamRegistration::State::Accept(const GrayImage& frame, const TileMeasurement& measurement,
@@ -143,7 +178,14 @@ void StreamRegistration::State::Accept(const GrayImage& frame, const TileMeasure
   registration.overlap = measurement.overlap;
   registration.quality = measurement.quality;
 
-  last_frame_from_previous = InverseHomography(registration.previous_from_frame);
+  const Eigen::Matrix3d frame_from_previous = InverseHomography(registration.previous_from_frame);
+  if (global_motion.Repeats()) {
+    registration.change = FrameChange::kRepeated;
+  } else {
+    if (IsJump(frame_from_previous)) registration.change = FrameChange::kJump;
+    last_frame_from_previous = frame_from_previous;
+  }
+  last = measurement;
   reference_from_previous = reference_from_frame;
   const bool anchored = options.reference == ReferenceMode::kAnchor;
   if (anchored) registration.anchor_from_frame = reference_from_frame;
@@ -174,16 +216,10 @@ FrameRegistration StreamRegistration::Register(const GrayImage& frame) {
     state.StartSegment(frame, registration);
     return registration;
   }
-  TileMeasurement measurement = state.MeasureWithPredictions(frame);
-  if (PredictedError(measurement) > state.options.refine_above_px) {
-    measurement = state.tiles.Refine(measurement, state.reference, frame);
-  }
-  if (PredictedError(measurement) > state.options.max_error_px &&
-      measurement.quality == RegistrationQuality::kValid) {
-    measurement.quality = RegistrationQuality::kDegraded;
-  }
+  const TileMeasurement measurement = state.Measure(frame);
   if (measurement.quality == RegistrationQuality::kLost) {
     registration.quality = RegistrationQuality::kLost;
+    registration.change = FrameChange::kCut;
     state.StartSegment(frame, registration);
     registration.inliers = measurement.inliers;
     return registration;

@@ -17,6 +17,20 @@ enum class RegistrationQuality : std::uint8_t {
   kLost,      // not found; the homographies are the identity and the covariance is zero
 };
 
+// What happened between a frame and the one before, beside the camera's usual motion.
+enum class FrameChange : std::uint8_t {
+  kSteady,
+  kRepeated,   // the same picture again: a frozen source, or one that doubles frames
+  kNoTexture,  // nothing to hold on to: black, fog, a covered lens
+  kCut,        // other ground than before, or the same from too far away to be found again
+  kJump,       // found, but over a tenth of the frame's width from where its motion led
+};
+
+constexpr const char* NameOf(FrameChange change) {
+  constexpr const char* kNames[] = {"steady", "repeated", "no-texture", "cut", "jump"};
+  return kNames[static_cast<int>(change)];
+}
+
 // How one frame of a stream lies over the ground: the outcome of registration.
 struct FrameRegistration {
   // Counts the frames of a stream since its start, from 0.
@@ -43,6 +57,7 @@ struct FrameRegistration {
   // The first frame, and each frame from which on the ground is known anew (after a scene cut,
   // say): nothing before it can be compared with it.
   bool starts_segment = false;
+  FrameChange change = FrameChange::kSteady;
 };
 
 // An upright box in frame coordinates, px: covers x <= px < x + width.

@@ -49,10 +49,10 @@ TEST(JsonLineTest, HomographyHasTheseFieldsInThisOrder) {
   const std::string line = JsonLine(SampleOfHomography(true));
   EXPECT_THAT(line, EndsWith("}\n"));
   const Json json = Json::parse(line);
-  EXPECT_THAT(Keys(json),
-              ElementsAre("type", "stream", "frame", "pts_ns", "width", "height", "quality",
-                          "starts_segment", "previous_from_frame", "anchor_from_frame", "anchor",
-                          "corner_covariance_px2", "inliers", "tiles", "residual_px", "overlap"));
+  EXPECT_THAT(Keys(json), ElementsAre("type", "stream", "frame", "pts_ns", "width", "height",
+                                      "quality", "starts_segment", "change", "previous_from_frame",
+                                      "anchor_from_frame", "anchor", "corner_covariance_px2",
+                                      "inliers", "tiles", "residual_px", "overlap"));
   EXPECT_EQ(json["type"], "homography");
   EXPECT_EQ(json["frame"], 6);
   EXPECT_EQ(json["pts_ns"], 0);

@@ -39,6 +39,7 @@ inline FrameRegistration SampleRegistration(std::uint64_t frame_number, bool anc
   registration.overlap = 1.0 / x;
   registration.quality = static_cast<RegistrationQuality>(frame_number % 3);
   registration.starts_segment = frame_number % 2 == 0;
+  registration.change = static_cast<FrameChange>(frame_number % 5);
   return registration;
 }
 
@@ -77,7 +78,7 @@ inline bool Same(const FrameRegistration& a, const FrameRegistration& b) {
          a.anchor_from_frame == b.anchor_from_frame && a.anchor_number == b.anchor_number &&
          a.corner_covariance == b.corner_covariance && a.residual_px == b.residual_px &&
          a.inliers == b.inliers && a.tiles == b.tiles && a.overlap == b.overlap &&
-         a.quality == b.quality && a.starts_segment == b.starts_segment;
+         a.quality == b.quality && a.starts_segment == b.starts_segment && a.change == b.change;
 }
 
 }  // namespace windhover

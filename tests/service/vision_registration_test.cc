@@ -226,6 +226,39 @@ TEST_P(StreamRegistrationTest, ACutStartsANewSegment) {
   EXPECT_LT(HomographyRms(after.previous_from_frame, Flight(1, 2, 0), kWidth, kHeight), 0.1);
 }
 
+TEST_P(StreamRegistrationTest, SaysWhatHappened) {
+  const auto registration = Make();
+  const auto change = [&](const Eigen::Matrix3d& ground_from_frame) {
+    return registration->Register(Frame(ground_from_frame)).change;
+  };
+  EXPECT_EQ(change(Flight(0, 3, 0)), FrameChange::kSteady);
+  EXPECT_EQ(change(Flight(1, 3, 0)), FrameChange::kSteady);
+  EXPECT_EQ(change(Flight(2, 3, 0)), FrameChange::kSteady);
+
+  const FrameRegistration repeated = registration->Register(frame_);
+  EXPECT_EQ(repeated.change, FrameChange::kRepeated);
+  EXPECT_EQ(repeated.quality, RegistrationQuality::kValid);
+  EXPECT_TRUE(repeated.previous_from_frame.isIdentity(1e-12));
+  EXPECT_EQ(change(Flight(3, 3, 0)), FrameChange::kSteady);
+
+  Eigen::Matrix3d far_off = Flight(4, 3, 0);
+  far_off(0, 2) += 0.2 * kWidth;
+  const FrameRegistration jump = registration->Register(Frame(far_off));
+  EXPECT_EQ(jump.change, FrameChange::kJump);
+  EXPECT_EQ(jump.quality, RegistrationQuality::kValid);
+  EXPECT_FALSE(jump.starts_segment);
+
+  Eigen::Matrix3d elsewhere = Eigen::Matrix3d::Identity();
+  elsewhere.topRightCorner<2, 1>() << 4000, 7000;
+  EXPECT_EQ(change(elsewhere), FrameChange::kCut);
+  EXPECT_EQ(change(elsewhere * Flight(1, 3, 0)), FrameChange::kSteady);
+  for (int t = 0; t < 3; ++t) {
+    EXPECT_EQ(registration->Register(Constant(0)).change, FrameChange::kNoTexture) << t;
+  }
+  EXPECT_EQ(change(elsewhere * Flight(2, 3, 0)), FrameChange::kCut);
+  EXPECT_EQ(change(elsewhere * Flight(3, 3, 0)), FrameChange::kSteady);
+}
+
 TEST_P(StreamRegistrationTest, ResetForgetsButCountsOn) {
   const auto registration = Make();
   registration->Register(Frame(Flight(0, 2, 0)));

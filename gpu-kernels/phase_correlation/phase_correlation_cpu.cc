@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu-kernels/phase_correlation/phase_correlation_cpu.h"
 
-#include <fftw3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <vector>
 
 #include "gpu-kernels/multiversion.h"
+#include "gpu-kernels/phase_correlation/fourier_transform_cpu.h"
 #include "gpu-kernels/phase_correlation/phase_correlation_tables.h"
 #include "gpu-kernels/warp/row_sampler_cpu.h"
 #include "gpu-kernels/warp/warp_coefficients.h"
@@ -25,7 +23,7 @@ namespace {
 constexpr int kLanes = 16;
 using Lanes = float __attribute__((vector_size(4 * kLanes), may_alias));
 
-// Aligned to 64 bytes, as Lanes asks for; more than FFTW does.
+// Aligned to 64 bytes, as Lanes and FourierTransform ask for.
 constexpr std::align_val_t kAlignment{64};
 struct AlignedDelete {
   void operator()(float* memory) const { ::operator delete(memory, kAlignment); }
@@ -35,35 +33,6 @@ using FloatBuffer = std::unique_ptr<float[], AlignedDelete>;
 FloatBuffer AllocateFloats(std::size_t count) {
   return FloatBuffer(static_cast<float*>(::operator new(count * sizeof(float), kAlignment)));
 }
-
-// FFTW's planner is not thread-safe; executing a plan is.
-std::mutex& PlannerMutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-class Plan {
- public:
-  // `make` calls one of FFTW's planners.
-  template <typename Make>
-  explicit Plan(Make make) {
-    const std::lock_guard lock(PlannerMutex());
-    plan_ = make();
-    if (plan_ == nullptr) throw std::runtime_error("phase correlation: FFTW made no plan");
-  }
-  Plan(const Plan&) = delete;
-  Plan& operator=(const Plan&) = delete;
-  ~Plan() {
-    const std::lock_guard lock(PlannerMutex());
-    fftwf_destroy_plan(plan_);
-  }
-  fftwf_plan get() const { return plan_; }
-
- private:
-  fftwf_plan plan_;
-};
-
-fftwf_complex* AsComplex(float* values) { return reinterpret_cast<fftwf_complex*>(values); }
 
 // values and seen become sums weighted with the window's row.
 struct WeightedSums {
@@ -175,16 +144,7 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
         window_x_(AllocateFloats(tables_.tile_width)),
         row_summaries_(tables_.tile_height),
         sampler_(tables_.tile_width),
-        // Measured plans differ from run to run, and with them the last bits of the result; at
-        // these sides estimated ones are as fast.
-        forward_([this] {
-          return fftwf_plan_dft_r2c_2d(tables_.tile_height, tables_.tile_width, tile_.get(),
-                                       AsComplex(spectrum_.get()), FFTW_ESTIMATE);
-        }),
-        inverse_([this] {
-          return fftwf_plan_dft_c2r_2d(tables_.tile_height, tables_.tile_width,
-                                       AsComplex(spectrum_.get()), tile_.get(), FFTW_ESTIMATE);
-        }) {
+        transform_(MakeFourierTransform(tables_.tile_width, tables_.tile_height)) {
     std::memcpy(window_x_.get(), tables_.window_x.data(), tables_.tile_width * sizeof(float));
     const int side = 2 * tables_.peak_radius + 1;
     neighbourhood_.resize(side * side);
@@ -207,7 +167,7 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
                                                  tables_.tile_width, tables_.tile_height);
       own.shift(i) = sampling.shift;
       own.coverage(i) = FillTile(mapped, sampling.picture_from_tile);
-      fftwf_execute_dft_r2c(forward_.get(), tile_.get(), AsComplex(own.spectrum(i)));
+      transform_->Forward(tile_.get(), own.spectrum(i));
     }
   }
 
@@ -221,7 +181,7 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
     for (std::size_t i = 0; i < peaks.size(); ++i) {
       CrossPower(own_reference.spectrum(i), own_current.spectrum(i), tables_.spectral_weight.data(),
                  tables_.damping, bins_, spectrum_.get());
-      fftwf_execute_dft_c2r(inverse_.get(), AsComplex(spectrum_.get()), tile_.get());
+      transform_->Inverse(spectrum_.get(), tile_.get());
       peaks[i] =
           MeasurePeak(tables_, FindPeak(), own_reference.coverage(i), own_current.coverage(i));
       peaks[i].dx += own_current.shift(i).dx - own_reference.shift(i).dx;
@@ -307,8 +267,7 @@ class PhaseCorrelationCpu : public PhaseCorrelation {
   std::vector<RowSummary> row_summaries_;
   std::vector<float> neighbourhood_;
   RowSampler sampler_;
-  Plan forward_;
-  Plan inverse_;
+  const std::unique_ptr<FourierTransform> transform_;
 };
 
 }  // namespace

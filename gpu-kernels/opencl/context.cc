@@ -36,9 +36,12 @@ Buffer::Buffer(const Context& context, std::size_t size_bytes)
       queue_(context.map_queue()),
       size_bytes_(size_bytes) {
   if (size_bytes == 0) throw std::invalid_argument("memory of 0 bytes asked for");
+  // Drivers of devices with memory of their own would keep such a buffer in the host's, where every
+  // access goes over the bus.
+  const cl_mem_flags place = context.shares_host_memory() ? CL_MEM_ALLOC_HOST_PTR : 0;
   cl_int code = CL_SUCCESS;
-  memory_ = Handle<cl_mem>(clCreateBuffer(context.get(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR,
-                                          size_bytes, nullptr, &code));
+  memory_ = Handle<cl_mem>(
+      clCreateBuffer(context.get(), CL_MEM_READ_WRITE | place, size_bytes, nullptr, &code));
   Check(code, "clCreateBuffer of " + std::to_string(size_bytes) + " bytes", device_);
 }
 
@@ -86,6 +89,10 @@ Context::Context(const Device& device, ProgramCache cache)
   Check(code, "clCreateContext", name_);
   map_queue_ = MakeQueue(*this);
 
+  cl_bool unified = CL_FALSE;
+  WINDHOVER_CL(name_, clGetDeviceInfo(device.id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof(unified),
+                                      &unified, nullptr));
+  shares_host_memory_ = unified == CL_TRUE;
   cl_uint lanes = 1;
   WINDHOVER_CL(name_, clGetDeviceInfo(device.id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof(lanes),
                                       &lanes, nullptr));

@@ -79,6 +79,8 @@ class Context : public std::enable_shared_from_this<Context> {
   // The name that error texts use.
   const std::string& name() const { return name_; }
   bool is_cpu() const { return device_.info.kind == DeviceKind::kOpenClCpu; }
+  // Whether the device works in the host's memory, so that mapping costs no copy.
+  bool shares_host_memory() const { return shares_host_memory_; }
   // Elements of the float vectors that kernels should use: 4, 8 or 16 on CPUs, 1 elsewhere.
   int float_lanes() const { return float_lanes_; }
 
@@ -110,6 +112,7 @@ class Context : public std::enable_shared_from_this<Context> {
   std::string name_;
   ProgramCache cache_;
   int float_lanes_ = 1;
+  bool shares_host_memory_ = false;
   Handle<cl_context> context_;
   Handle<cl_command_queue> map_queue_;
 

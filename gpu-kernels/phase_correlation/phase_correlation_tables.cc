@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDamping = 64.0;
+constexpr float kMinHeight = 1e-4F;
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 512;
 constexpr int kMaxTiles = 1024;
@@ -250,6 +251,7 @@ PhaseCorrelationTables::PhaseCorrelationTables(const PhaseCorrelationSettings& s
       static_cast<double>(settings.noise_sigma) * settings.noise_sigma + 1.0 / 12.0;
   damping = static_cast<float>(kDamping * grey_variance * SumOfSquares(window_x) *
                                SumOfSquares(window_y));
+  min_height = kMinHeight / std::max(1.0F, settings.noise_sigma * settings.noise_sigma);
   peak_radius = std::min(2 + static_cast<int>(std::ceil(3.0F * settings.peak_sigma_px)),
                          std::min(tile_width, tile_height) / 4);
 }
@@ -315,7 +317,8 @@ TilePeak MeasurePeak(const PhaseCorrelationTables& tables, const PeakNeighbourho
 
   result.valid = reference_coverage >= kMinCoverage && current_coverage >= kMinCoverage &&
                  result.height > kMinPeakToNoise * result.noise &&
-                 shift_x != tables.tile_width / 2 && shift_y != tables.tile_height / 2;
+                 result.height > tables.min_height && shift_x != tables.tile_width / 2 &&
+                 shift_y != tables.tile_height / 2;
   return result;
 }
 

@@ -46,6 +46,11 @@ struct PhaseCorrelationTables {
   // them, and finds shifts of 30 px that 1 loses.
   float damping;
 
+  // A peak must be higher than this: 1e-4, less where a high noise_sigma damps all peaks. What
+  // rounding leaves of a tile without texture makes peaks of 1e-5, which may rise above a noise
+  // that is as small; pure noise of 1 grey level makes some of 1e-3, textures of 0.05 and more.
+  float min_height;
+
   // Half side in px of the square about the highest sample that counts as the peak's neighbourhood:
   // 2 + ceil(3 * peak_sigma_px), but at most a quarter of the smaller tile side.
   int peak_radius;
@@ -98,9 +103,10 @@ struct PeakNeighbourhood {
 // covariance  footprint moments times (noise / height)^2, plus 1e-6 px^2 on the diagonal. Agrees
 //             within a factor of 3 with the errors measured on textures with noise of sigma 0 to 5
 //             and shifts of up to 3 px.
-// valid       coverages >= kMinCoverage, height > kMinPeakToNoise * noise, and the highest sample
-//             not at a shift of exactly half a tile's side. Where not valid for want of a positive
-//             height, the offset is 0 and the covariance that of a uniform guess over the tile.
+// valid       coverages >= kMinCoverage, height > kMinPeakToNoise * noise and > min_height, and the
+//             highest sample not at a shift of exactly half a tile's side. Where not valid for want
+//             of a positive height, the offset is 0 and the covariance that of a uniform guess over
+//             the tile.
 TilePeak MeasurePeak(const PhaseCorrelationTables& tables, const PeakNeighbourhood& peak,
                      float reference_coverage, float current_coverage);
 

@@ -1,165 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contract of the phase correlation and agreement of its twins. How exactly shifts are measured is
-// the subject of phase_correlation_accuracy_test.cc.
-
-#include "gpu-kernels/phase_correlation/phase_correlation.h"
+// Contract of the phase correlation. How exactly shifts are measured is the subject of
+// phase_correlation_accuracy_test.cc.
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <ostream>
-#include <string>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "gpu-kernels/opencl/context.h"
-#include "gpu-kernels/phase_correlation/phase_correlation_opencl.h"
-#include "tests/gpu-kernels/operator_test.h"
+#include "tests/gpu-kernels/phase_correlation_scene.h"
 
 namespace windhover {
 namespace {
-
-// Ground that can be looked at from anywhere: waves of many directions and lengths of 3 to 80 px.
-double Ground(double x, double y) {
-  double grey = 128.0;
-  for (int i = 0; i < 40; ++i) {
-    const double angle = 2.399963 * i;  // the golden angle spreads directions evenly
-    const double frequency = 2.0 * 3.14159265 / (80.0 * std::pow(3.0 / 80.0, i / 39.0));
-    grey += 11.0 * std::sin(frequency * (std::cos(angle) * x + std::sin(angle) * y) + i * i);
-  }
-  return grey;
-}
-
-// What a camera sees whose pixel x shows the ground at ground_from_picture(x).
-Picture Shot(PictureSize size, const Matrix3& ground_from_picture) {
-  Picture picture(size.width, size.height);
-  const Matrix3& h = ground_from_picture;
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const double w = h[6] * x + h[7] * y + h[8];
-      const double grey =
-          Ground((h[0] * x + h[1] * y + h[2]) / w, (h[3] * x + h[4] * y + h[5]) / w);
-      picture.at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L));
-    }
-  }
-  return picture;
-}
-
-Matrix3 Shift(double x, double y) { return {1, 0, x, 0, 1, y, 0, 0, 1}; }
-
-// Turned by 3 degrees, 2 % larger, tilted: inverse of each other.
-const Matrix3 kTurned = {1.0186, 0.0534, -14.0, -0.0534, 1.0186, 9.5, 1.2e-5, -2.1e-5, 1.0};
-
-PhaseCorrelationSettings Settings(int tile_width, int tile_height, std::vector<TileOrigin> tiles) {
-  PhaseCorrelationSettings settings;
-  settings.tile_width = tile_width;
-  settings.tile_height = tile_height;
-  settings.tiles = std::move(tiles);
-  return settings;
-}
-
-// 5 tiles, an odd number, of which the last ones hang out of a 333 x 251 picture.
-std::vector<TileOrigin> SomeTiles(int width, int height) {
-  return {{7, 5},
-          {(333 - width) / 2, (251 - height) / 2},
-          {333 - width - 3, 251 - height - 1},
-          {-width / 3, 20},
-          {333 - width / 2, 251 - height / 2}};
-}
-
-void ExpectFinite(const TilePeak& peak) {
-  for (const float value : {peak.dx, peak.dy, peak.covariance_xx, peak.covariance_xy,
-                            peak.covariance_yy, peak.height, peak.noise, peak.coverage}) {
-    EXPECT_TRUE(std::isfinite(value));
-  }
-  EXPECT_GE(peak.covariance_xx, 0.0F);
-  EXPECT_GE(peak.covariance_yy, 0.0F);
-  EXPECT_GE(peak.coverage, 0.0F);
-  EXPECT_LE(peak.coverage, 1.0F);
-  EXPECT_GE(peak.noise, 0.0F);
-}
-
-// What the twins may differ by: offsets by half of what the contract allows; heights and noise by
-// what samples that fall within rounding of the picture's border may make. Valid flags are compared
-// but where a value lies at its threshold.
-void ExpectTwins(const TilePeak& a, const TilePeak& b, const std::string& what) {
-  SCOPED_TRACE(what);
-  EXPECT_NEAR(a.coverage, b.coverage, 1e-3);
-  EXPECT_NEAR(a.height, b.height, 1e-4 + 0.02 * std::abs(a.height));
-  EXPECT_NEAR(a.noise, b.noise, 1e-4 + 0.05 * a.noise);
-  const bool at_threshold = std::abs(a.height - 10.0F * a.noise) < 0.05F * a.height ||
-                            std::abs(a.coverage - 0.25F) < 1e-3F;
-  if (!at_threshold) {
-    EXPECT_EQ(a.valid, b.valid);
-  }
-  if (!a.valid || !b.valid) return;
-  EXPECT_NEAR(a.dx, b.dx, 0.01);
-  EXPECT_NEAR(a.dy, b.dy, 0.01);
-  const float scale = std::max(a.covariance_xx, a.covariance_yy);
-  EXPECT_NEAR(a.covariance_xx, b.covariance_xx, 0.05 * scale);
-  EXPECT_NEAR(a.covariance_xy, b.covariance_xy, 0.05 * scale);
-  EXPECT_NEAR(a.covariance_yy, b.covariance_yy, 0.05 * scale);
-}
-
-// Reference and current picture, and where the current one is looked at.
-struct Pair {
-  std::string name;
-  Picture reference;
-  Picture current;
-  Matrix3 current_from_grid = kIdentity3;
-  // False where rounding decides what is seen, so that twins need not agree.
-  bool well_conditioned = true;
-};
-
-template <typename MakeImage>
-std::vector<TilePeak> Correlate(PhaseCorrelation& correlation, const Pair& pair,
-                                const MakeImage& make_image) {
-  const auto reference = correlation.MakeSpectra();
-  const auto current = correlation.MakeSpectra();
-  correlation.Transform(make_image(pair.reference), kIdentity3, *reference);
-  correlation.Transform(make_image(pair.current), pair.current_from_grid, *current);
-  std::vector<TilePeak> peaks(correlation.settings().tiles.size());
-  correlation.Correlate(*reference, *current, peaks);
-  return peaks;
-}
-
-std::vector<Pair> AllPairs() {
-  constexpr PictureSize kSize = {333, 251};
-  const Picture ground = Shot(kSize, kIdentity3);
-  return {
-      {"same", ground, ground},
-      {"shifted", ground, Shot(kSize, Shift(-3.3, 1.7))},
-      {"turned", ground, Shot(kSize, kTurned)},
-      {"predicted", ground, ground, kTurned},
-      {"mirrored about the horizon", ground, ground, {1, 0, 0, 0, 1, 0, 0.01, 0, -1}, false},
-      {"far away", ground, ground, Shift(10000, -10000)},
-      {"degenerate", ground, ground, {0, 0, 0, 0, 0, 0, 0, 0, 0}},
-      {"black", ConstantPicture(kSize, 0), ConstantPicture(kSize, 0)},
-      {"saturated", ConstantPicture(kSize, 255), ConstantPicture(kSize, 255)},
-      {"constant to ground", ConstantPicture(kSize, 77), ground},
-      {"noise", RandomPicture(kSize, 1), RandomPicture(kSize, 2)},
-      {"same noise", RandomPicture(kSize, 1), RandomPicture(kSize, 1)},
-      {"extremes", ExtremePicture(kSize, 1), ExtremePicture(kSize, 1)},
-      {"other sizes", ground, Shot({97, 203}, kIdentity3)},
-      {"one pixel", ground, ConstantPicture({1, 1}, 200)},
-      {"one column", ground, Shot({1, 251}, kIdentity3)},
-      {"one row", ground, Shot({333, 1}, kIdentity3)},
-  };
-}
-
-class PhaseCorrelationTest : public OperatorTest {
- protected:
-  std::vector<TilePeak> Run(const PhaseCorrelationSettings& settings, const Pair& pair,
-                            int extra_stride = 0) {
-    const auto correlation = backend().MakePhaseCorrelation(settings);
-    return Correlate(*correlation, pair,
-                     [&](const Picture& picture) { return Upload(picture, extra_stride); });
-  }
-};
 
 TEST_P(PhaseCorrelationTest, IdenticalPicturesDoNotShift) {
   const Picture ground = Shot({333, 251}, kIdentity3);
@@ -216,20 +72,6 @@ TEST_P(PhaseCorrelationTest, EveryWindowMeasures) {
   }
 }
 
-TEST_P(PhaseCorrelationTest, SwappedPicturesShiftTheOtherWay) {
-  const Picture a = Shot({333, 251}, kIdentity3);
-  const Picture b = Shot({333, 251}, Shift(2.4, -5.1));
-  const PhaseCorrelationSettings settings = Settings(128, 64, SomeTiles(128, 64));
-  const auto forth = Run(settings, {"", a, b});
-  const auto back = Run(settings, {"", b, a});
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_TRUE(forth[i].valid && back[i].valid);
-    EXPECT_NEAR(forth[i].dx, -back[i].dx, 1e-3);
-    EXPECT_NEAR(forth[i].dy, -back[i].dy, 1e-3);
-    EXPECT_NEAR(forth[i].height, back[i].height, 1e-3);
-  }
-}
-
 TEST_P(PhaseCorrelationTest, PredictionTakesAHomographyOff) {
   // The current picture's pixel p shows the grid's ground at kTurned(p); its inverse predicts.
   const Matrix3& t = kTurned;
@@ -260,24 +102,6 @@ TEST_P(PhaseCorrelationTest, CoverageIsTheShareOfTheWindowInsideThePicture) {
   EXPECT_TRUE(peaks[0].valid);
   EXPECT_TRUE(peaks[1].valid);
   for (const std::size_t i : {3, 4, 5}) EXPECT_FALSE(peaks[i].valid);
-}
-
-TEST_P(PhaseCorrelationTest, NothingIsNanAndNoTextureGivesNoPeak) {
-  for (const PictureSize side : {PictureSize{16, 16}, {32, 64}, {128, 128}}) {
-    const auto correlation = backend().MakePhaseCorrelation(
-        Settings(side.width, side.height, SomeTiles(side.width, side.height)));
-    for (const Pair& pair : AllPairs()) {
-      SCOPED_TRACE(pair.name);
-      const auto peaks =
-          Correlate(*correlation, pair, [&](const Picture& picture) { return Upload(picture); });
-      const bool textureless = pair.name == "black" || pair.name == "saturated" ||
-                               pair.name == "constant to ground" || pair.name == "far away";
-      for (const TilePeak& peak : peaks) {
-        ExpectFinite(peak);
-        EXPECT_FALSE(textureless && peak.valid);
-      }
-    }
-  }
 }
 
 TEST_P(PhaseCorrelationTest, StrideDoesNotMatter) {
@@ -372,89 +196,6 @@ TEST_P(PhaseCorrelationTest, OperatorsOfOneBackendRunSideBySide) {
 }
 
 WINDHOVER_TEST_ON_ALL_BACKENDS(PhaseCorrelationTest);
-
-// The twins on the same pictures, for an OpenCL layout and tile sides.
-struct TwinCase {
-  std::string name;
-  PhaseCorrelationLayout layout;
-  std::vector<PictureSize> sides;
-};
-
-void PrintTo(const TwinCase& twin_case, std::ostream* out) { *out << twin_case.name; }
-
-class PhaseCorrelationTwinTest : public testing::TestWithParam<TwinCase> {};
-
-TEST_P(PhaseCorrelationTwinTest, TwinsAgree) {
-  const std::vector<opencl::Device> devices = opencl::ListDevices();
-  ASSERT_FALSE(devices.empty()) << "this test needs an OpenCL device";
-  const auto context = std::make_shared<opencl::Context>(
-      devices.front(), opencl::ProgramCache(opencl::ProgramCache::DefaultFolder()));
-  const auto cpu = BackendNamed("CpuTwin");
-  const auto fill = [](GrayImage image, const Picture& picture) {
-    const auto mapped = image.Write();
-    for (int y = 0; y < picture.height; ++y) {
-      std::copy_n(&picture.pixels[y * picture.width], picture.width, mapped.row(y));
-    }
-    return image;
-  };
-  const auto on_cpu = [&](const Picture& picture) {
-    return fill(cpu->MakeImage<std::uint8_t>(picture.width, picture.height), picture);
-  };
-  const auto on_device = [&](const Picture& picture) {
-    const int stride = (picture.width + 63) / 64 * 64;
-    return fill(GrayImage(context->Allocate(stride * picture.height), picture.width, picture.height,
-                          stride),
-                picture);
-  };
-  const std::vector<Pair> pairs = AllPairs();
-  for (const PictureSize side : GetParam().sides) {
-    PhaseCorrelationSettings settings =
-        Settings(side.width, side.height, SomeTiles(side.width, side.height));
-    for (const float peak_sigma : {0.8F, 0.0F}) {
-      settings.peak_sigma_px = peak_sigma;
-      const auto cpu_twin = cpu->MakePhaseCorrelation(settings);
-      const auto open_cl = MakePhaseCorrelationOpenCl(*context, settings, GetParam().layout);
-      for (const Pair& pair : pairs) {
-        if (!pair.well_conditioned) continue;
-        const auto expected = Correlate(*cpu_twin, pair, on_cpu);
-        const auto actual = Correlate(*open_cl, pair, on_device);
-        for (std::size_t i = 0; i < expected.size(); ++i) {
-          ExpectTwins(expected[i], actual[i],
-                      pair.name + ", " + std::to_string(side.width) + "x" +
-                          std::to_string(side.height) + ", tile " + std::to_string(i) + ", sigma " +
-                          std::to_string(peak_sigma));
-        }
-      }
-    }
-  }
-}
-
-// As on CPUs with vectors of 16, 8 and 4, and as on GPUs.
-INSTANTIATE_TEST_SUITE_P(
-    Layouts, PhaseCorrelationTwinTest,
-    testing::Values(
-        TwinCase{
-            "Lanes16Small",
-            {.lanes = 16, .sample_rows = 8, .sample_batch = 64, .work_group = 1, .peak_group = 1},
-            {{16, 16}, {32, 64}, {64, 32}}},
-        TwinCase{
-            "Lanes16Large",
-            {.lanes = 16, .sample_rows = 8, .sample_batch = 64, .work_group = 1, .peak_group = 1},
-            {{128, 128}, {256, 128}, {128, 256}, {512, 16}}},
-        TwinCase{
-            "Lanes8",
-            {.lanes = 8, .sample_rows = 8, .sample_batch = 64, .work_group = 1, .peak_group = 1},
-            {{64, 64}, {32, 64}}},
-        TwinCase{
-            "Lanes4",
-            {.lanes = 4, .sample_rows = 16, .sample_batch = 16, .work_group = 4, .peak_group = 2},
-            {{32, 32}, {32, 64}}},
-        TwinCase{
-            "Lanes2",
-            {.lanes = 2, .sample_rows = 1, .sample_batch = 2, .work_group = 16, .peak_group = 32},
-            {{32, 32}, {64, 32}}},
-        TwinCase{"Lanes1", {}, {{64, 64}, {32, 64}}}),
-    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace windhover

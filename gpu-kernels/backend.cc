@@ -33,7 +33,8 @@ std::string DeviceInfo::Describe() const {
   return "OpenCL " + opencl::TypeName(kind) + " '" + name + "' (" + platform + ")";
 }
 
-std::shared_ptr<Backend> Backend::Create(const std::string& device, const Warn& warn) {
+std::shared_ptr<Backend> Backend::Create(const std::string& device, const Warn& warn,
+                                         const StageObserver& observe) {
   const std::string selector = device.empty() ? SelectorFromEnvironment() : device;
   if (selector == "cpu") return MakeCpuBackend();
 
@@ -51,8 +52,8 @@ std::shared_ptr<Backend> Backend::Create(const std::string& device, const Warn& 
   // The list is in the order of preference: an empty selector takes its first.
   const std::optional<std::size_t> chosen = opencl::SelectDevice(infos, selector);
   if (!chosen) RefuseDevice(selector, infos);
-  return opencl::MakeOpenClBackend(devices[*chosen],
-                                   opencl::ProgramCache(opencl::ProgramCache::DefaultFolder()));
+  return opencl::MakeOpenClBackend(
+      devices[*chosen], opencl::ProgramCache(opencl::ProgramCache::DefaultFolder()), observe);
 }
 
 std::vector<DeviceInfo> Backend::Devices() {

@@ -26,6 +26,10 @@ class DeviceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Is told what a stage took on the device: a kernel by its name, or a transfer ("write", "read",
+// "map", "unmap"). Called by whichever thread ran it, after it has ended; must not throw.
+using StageObserver = std::function<void(const std::string& stage, double ms)>;
+
 enum class DeviceKind { kCpuTwin, kOpenClCpu, kOpenClGpu, kOpenClOther };
 
 struct DeviceInfo {
@@ -61,7 +65,11 @@ class Backend {
   //           name, or the device's index among those of that platform and type; each part may be
   //           empty. This is OpenCV's grammar.
   // Throws DeviceError, listing the devices there are, when none fits.
-  static std::shared_ptr<Backend> Create(const std::string& device = "", const Warn& warn = {});
+  //
+  // With `observe` the device notes times, which costs a little. The CPU twin has no stages to
+  // tell.
+  static std::shared_ptr<Backend> Create(const std::string& device = "", const Warn& warn = {},
+                                         const StageObserver& observe = {});
 
   // All OpenCL devices in the order of preference, then the CPU twin.
   static std::vector<DeviceInfo> Devices();

@@ -10,9 +10,10 @@ namespace windhover::opencl {
 namespace {
 
 Handle<cl_command_queue> MakeQueue(const Context& context) {
+  const cl_command_queue_properties properties = context.observe() ? CL_QUEUE_PROFILING_ENABLE : 0;
   cl_int code = CL_SUCCESS;
   Handle<cl_command_queue> queue(
-      clCreateCommandQueue(context.get(), context.device_id(), 0, &code));
+      clCreateCommandQueue(context.get(), context.device_id(), properties, &code));
   Check(code, "clCreateCommandQueue", context.name());
   return queue;
 }
@@ -34,6 +35,7 @@ Buffer::Buffer(const Context& context, std::size_t size_bytes)
     : device_(context.name()),
       context_(context.handle()),
       queue_(context.map_queue()),
+      observe_(context.observe()),
       size_bytes_(size_bytes) {
   if (size_bytes == 0) throw std::invalid_argument("memory of 0 bytes asked for");
   // Drivers of devices with memory of their own would keep such a buffer in the host's, where every
@@ -47,10 +49,12 @@ Buffer::Buffer(const Context& context, std::size_t size_bytes)
 
 std::byte* Buffer::Map(Access access) {
   const cl_map_flags flags = access == Access::kRead ? CL_MAP_READ : CL_MAP_WRITE_INVALIDATE_REGION;
+  StageTimes times(observe_);
   cl_int code = CL_SUCCESS;
   void* pointer = clEnqueueMapBuffer(queue_.get(), memory_.get(), CL_TRUE, flags, 0, size_bytes_, 0,
-                                     nullptr, nullptr, &code);
+                                     nullptr, times.Next("map"), &code);
   Check(code, "clEnqueueMapBuffer", device_);
+  times.Report();
   return static_cast<std::byte*>(pointer);
 }
 
@@ -61,26 +65,39 @@ void Buffer::Unmap(std::byte* pointer) noexcept {
       CL_SUCCESS) {
     const cl_event event = done.get();
     clWaitForEvents(1, &event);
+    StageTimes times(observe_);
+    times.Add("unmap", std::move(done));
+    times.Report();
   }
 }
 
 Queue::Queue(const Context& context)
-    : device_(context.name()), context_(context.handle()), queue_(MakeQueue(context)) {}
+    : device_(context.name()),
+      context_(context.handle()),
+      queue_(MakeQueue(context)),
+      times_(context.observe()) {}
 
 void Queue::EnqueueWrite(const Buffer& buffer, const void* bytes, std::size_t size_bytes) {
   WINDHOVER_CL(device_, clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_FALSE, 0, size_bytes,
-                                             bytes, 0, nullptr, nullptr));
+                                             bytes, 0, nullptr, EventOf("write")));
 }
 
 void Queue::Read(const Buffer& buffer, void* bytes, std::size_t size_bytes) {
   WINDHOVER_CL(device_, clEnqueueReadBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, size_bytes,
-                                            bytes, 0, nullptr, nullptr));
+                                            bytes, 0, nullptr, EventOf("read")));
+  times_.Report();
 }
 
-void Queue::Finish() { WINDHOVER_CL(device_, clFinish(queue_.get())); }
+void Queue::Finish() {
+  WINDHOVER_CL(device_, clFinish(queue_.get()));
+  times_.Report();
+}
 
-Context::Context(const Device& device, ProgramCache cache)
-    : device_(device), name_(device.info.Describe()), cache_(std::move(cache)) {
+Context::Context(const Device& device, ProgramCache cache, StageObserver observe)
+    : device_(device),
+      name_(device.info.Describe()),
+      cache_(std::move(cache)),
+      observe_(std::move(observe)) {
   const cl_context_properties properties[] = {
       CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(device.platform), 0};
   cl_int code = CL_SUCCESS;

@@ -13,6 +13,7 @@
 #include "gpu-kernels/opencl/api.h"
 #include "gpu-kernels/opencl/device.h"
 #include "gpu-kernels/opencl/program_cache.h"
+#include "gpu-kernels/opencl/stage_times.h"
 
 namespace windhover::opencl {
 
@@ -35,6 +36,7 @@ class Buffer : public Memory {
   std::string device_;
   Handle<cl_context> context_;
   Handle<cl_command_queue> queue_;
+  StageObserver observe_;
   Handle<cl_mem> memory_;
   std::size_t size_bytes_;
 };
@@ -52,6 +54,9 @@ class Queue {
   // Waits until all that was enqueued has run. Throws DeviceError where some of it failed.
   void Finish();
 
+  // Where the next call shall put its event, so that its time can be told; mostly null.
+  cl_event* EventOf(const std::string& stage) { return times_.Next(stage); }
+
   cl_command_queue get() const { return queue_.get(); }
   cl_context context() const { return context_.get(); }
   const std::string& device() const { return device_; }
@@ -60,6 +65,7 @@ class Queue {
   std::string device_;
   Handle<cl_context> context_;
   Handle<cl_command_queue> queue_;
+  StageTimes times_;
 };
 
 // A compiled program; copies share it.
@@ -73,11 +79,14 @@ struct Program {
 // constructor keeps shared_from_this(). Queues, buffers, programs and kernels may outlive it.
 class Context : public std::enable_shared_from_this<Context> {
  public:
-  Context(const Device& device, ProgramCache cache);
+  // With `observe`, all queues note times and tell it.
+  Context(const Device& device, ProgramCache cache, StageObserver observe = {});
 
   const DeviceInfo& device() const { return device_.info; }
   // The name that error texts use.
   const std::string& name() const { return name_; }
+  // Empty unless stages are observed.
+  const StageObserver& observe() const { return observe_; }
   bool is_cpu() const { return device_.info.kind == DeviceKind::kOpenClCpu; }
   // Whether the device works in the host's memory, so that mapping costs no copy.
   bool shares_host_memory() const { return shares_host_memory_; }
@@ -111,6 +120,7 @@ class Context : public std::enable_shared_from_this<Context> {
   Device device_;
   std::string name_;
   ProgramCache cache_;
+  StageObserver observe_;
   int float_lanes_ = 1;
   bool shares_host_memory_ = false;
   Handle<cl_context> context_;

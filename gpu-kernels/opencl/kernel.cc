@@ -6,7 +6,7 @@
 namespace windhover::opencl {
 
 KernelBase::KernelBase(const Program& program, const std::string& name, std::size_t argument_count)
-    : name_(program.device + ", kernel " + name) {
+    : kernel_name_(name), name_(program.device + ", kernel " + name) {
   cl_int code = CL_SUCCESS;
   kernel_ = Handle<cl_kernel>(clCreateKernel(program.handle.get(), name.c_str(), &code));
   Check(code, "clCreateKernel", name_);
@@ -27,7 +27,7 @@ void KernelBase::SetBytes(cl_uint index, std::size_t size, const void* value) co
 void KernelBase::Run(Queue& queue, const WorkSize& size) const {
   WINDHOVER_CL(name_,
                clEnqueueNDRangeKernel(queue.get(), kernel_.get(), 3, nullptr, size.global.data(),
-                                      size.local.data(), 0, nullptr, nullptr));
+                                      size.local.data(), 0, nullptr, queue.EventOf(kernel_name_)));
 }
 
 }  // namespace windhover::opencl

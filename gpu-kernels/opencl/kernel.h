@@ -67,6 +67,7 @@ class KernelBase {
  private:
   void SetBytes(cl_uint index, std::size_t size, const void* value) const;
 
+  std::string kernel_name_;
   std::string name_;  // "<device>, kernel <name>", for error texts
   Handle<cl_kernel> kernel_;
 };

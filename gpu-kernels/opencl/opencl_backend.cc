@@ -26,8 +26,8 @@ constexpr std::size_t kMedianWindows[] = {21, 81, 255};
 
 class OpenClBackend : public Backend {
  public:
-  OpenClBackend(const Device& device, ProgramCache cache)
-      : context_(std::make_shared<Context>(device, std::move(cache))) {}
+  OpenClBackend(const Device& device, ProgramCache cache, const StageObserver& observe)
+      : context_(std::make_shared<Context>(device, std::move(cache), observe)) {}
 
   const DeviceInfo& device() const override { return context_->device(); }
 
@@ -108,8 +108,9 @@ void OpenClBackend::WarmUp(const std::function<void(const std::string&)>& progre
 
 }  // namespace
 
-std::shared_ptr<Backend> MakeOpenClBackend(const Device& device, ProgramCache cache) {
-  return std::make_shared<OpenClBackend>(device, std::move(cache));
+std::shared_ptr<Backend> MakeOpenClBackend(const Device& device, ProgramCache cache,
+                                           const StageObserver& observe) {
+  return std::make_shared<OpenClBackend>(device, std::move(cache), observe);
 }
 
 }  // namespace windhover::opencl

@@ -10,6 +10,7 @@
 namespace windhover::opencl {
 
 // Throws DeviceError where the device cannot be opened.
-std::shared_ptr<Backend> MakeOpenClBackend(const Device& device, ProgramCache cache);
+std::shared_ptr<Backend> MakeOpenClBackend(const Device& device, ProgramCache cache,
+                                           const StageObserver& observe = {});
 
 }  // namespace windhover::opencl

@@ -13,6 +13,7 @@
 #include "replay/benchmarks/motion_benchmark.h"
 #include "replay/benchmarks/registration_benchmark.h"
 #include "replay/benchmarks/speed_benchmark.h"
+#include "replay/benchmarks/stage_benchmark.h"
 #include "replay/format/text_lines.h"
 
 namespace windhover::replay {
@@ -27,6 +28,7 @@ struct BenchSettings {
   std::filesystem::path data = "../shared/data";
 
   bool quick = false;
+  bool stages = false;  // of speed
   std::filesystem::path first_frame_of;
   std::filesystem::path json;
 };
@@ -86,7 +88,9 @@ void BenchSpeed(const BenchSettings& settings) {
   SpeedBenchmarkSettings benchmark =
       settings.quick ? QuickSpeedBenchmark() : SpeedBenchmarkSettings();
   benchmark.threads = ThisMachine().cores;
-  Finish(settings, RunSpeedBenchmark(benchmark, {Say, ThrowIfInterrupted}));
+  const BenchmarkProgress progress = {Say, ThrowIfInterrupted};
+  Finish(settings, settings.stages ? RunStageBenchmark(benchmark, progress)
+                                   : RunSpeedBenchmark(benchmark, progress));
 }
 
 void AddDatasetOptions(CLI::App& command, BenchSettings& settings) {
@@ -104,6 +108,9 @@ void AddSpeedCommand(CLI::App& bench, const std::shared_ptr<BenchSettings>& sett
                                          "Frames a second of registration alone and of the "
                                          "whole pipeline, CPU and OpenCL, beside KLT");
   speed->add_flag("--quick", settings->quick, "One flight and fewer frames");
+  speed->add_flag("--stages", settings->stages,
+                  "Instead, where the time of a frame goes: steps, operators, and the device's "
+                  "kernels and transfers");
   speed->add_option("--json", settings->json, "File for figures and tables, for scripts");
   speed->final_callback([settings] { BenchSpeed(*settings); });
 }

@@ -3,48 +3,17 @@
 
 #include <algorithm>
 #include <memory>
-#include <opencv2/imgproc.hpp>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
-#include "gpu-kernels/backend.h"
 #include "replay/benchmarks/speed_contestants.h"
+#include "replay/benchmarks/speed_setup.h"
 #include "replay/benchmarks/timing.h"
 #include "replay/offline/pipeline_run.h"
-#include "replay/render/parallel.h"
 #include "service/gstreamer/start.h"
 
 namespace windhover::replay {
 namespace {
-
-std::string SizeText(const SpeedSize& size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
-
-SpeedFlight RenderFlight(const std::string& sequence, const SpeedSize& size, int threads,
-                         const BenchmarkProgress& progress) {
-  FlightPlan plan = FindFlightPlan(sequence);
-  plan.width = size.width;
-  plan.height = size.height;
-  progress.say("rendering sequence " + plan.number + ", " + SizeText(size) + ", " +
-               std::to_string(size.frames) + " frames");
-  const Renderer renderer(plan, threads, progress.check, size.frames);
-  SpeedFlight flight = {size.width, size.height, plan.frame_rate_hz, {}, {}};
-  flight.i420.resize(size.frames);
-  flight.truth.resize(size.frames);
-  ForEachInParallel(size.frames, threads, [&](int i) {
-    progress.check();
-    cv::cvtColor(renderer.Frame(i), flight.i420[i], cv::COLOR_BGR2YUV_I420);
-    flight.truth[i] = renderer.Truth(i);
-  });
-  return flight;
-}
-
-struct Device {
-  std::string name;  // in figures
-  std::string selector;
-};
 
 class SpeedBenchmark {
  public:
@@ -61,40 +30,17 @@ class SpeedBenchmark {
 
   SpeedBenchmarkSettings settings_;
   BenchmarkProgress progress_;
-  std::vector<Device> devices_;  // the default one first
+  const SpeedDevices devices_ = DevicesToTime();
   BenchmarkDocument document_;
 };
 
 SpeedBenchmark::SpeedBenchmark(const SpeedBenchmarkSettings& settings,
                                const BenchmarkProgress& progress)
     : settings_(settings), progress_(progress) {
-  for (const SpeedSize& size : settings.sizes) {
-    const int frames = &size == &settings.sizes.front()
-                           ? std::min(size.frames, settings.centre_frames)
-                           : size.frames;
-    if (frames <= kPipelineWarmUp + kFramesOnTheWay || size.width % 2 != 0 ||
-        size.height % 2 != 0) {
-      throw std::invalid_argument("the benchmark needs even frame sizes and more than " +
-                                  std::to_string(kPipelineWarmUp + kFramesOnTheWay) + " frames");
-    }
-  }
+  Check(settings);
   StartGStreamer();
-  const DeviceInfo by_default = Backend::Create()->device();
-  document_.device = by_default.Describe();
-  std::string opencl = "none";
-  for (const DeviceInfo& device : Backend::Devices()) {
-    const bool is_default = device.selector == by_default.selector;
-    if (device.kind == DeviceKind::kCpuTwin) {
-      devices_.push_back({"cpu", "cpu"});
-    } else if (opencl == "none" && (is_default || by_default.kind == DeviceKind::kCpuTwin)) {
-      devices_.push_back({"opencl", device.selector});
-      opencl = device.Describe();
-    } else {
-      continue;
-    }
-    if (is_default) std::swap(devices_.front(), devices_.back());
-  }
-  if (opencl == "none") document_.left_out.emplace_back("there is no OpenCL device");
+  document_.device = devices_.by_default;
+  document_.left_out = devices_.left_out;
   std::string sequences;
   for (const std::string& sequence : settings.sequences) {
     sequences += (sequences.empty() ? "" : ",") + sequence;
@@ -106,7 +52,7 @@ SpeedBenchmark::SpeedBenchmark(const SpeedBenchmarkSettings& settings,
   document_.options = {{"sequences", sequences},
                        {"frames", frames},
                        {"rounds", std::to_string(settings.rounds)},
-                       {"opencl", opencl},
+                       {"opencl", devices_.opencl},
                        {"plugin", PluginFile()}};
   for (const auto& [name, value] : document_.options) progress_.say(name + ": " + value);
 }
@@ -115,12 +61,12 @@ SpeedBenchmark::Contestants SpeedBenchmark::MakeContestants(const SpeedSize& siz
   Contestants contestants;
   contestants.push_back(MakeKltContestant());
   const bool first = &size == &settings_.sizes.front();
-  for (const Device& device : devices_) {
+  for (const SpeedDevice& device : devices_.devices) {
     contestants.push_back(MakeRegistrationContestant(device.selector, device.name));
     // What is measured on the default device stands without its name, too.
     const auto variants = [&](const std::string& mode) {
       std::vector<std::string> names = {mode + device.name + "."};
-      if (&device == &devices_.front()) names.push_back(mode);
+      if (&device == &devices_.devices.front()) names.push_back(mode);
       return names;
     };
     contestants.push_back(
@@ -133,8 +79,10 @@ SpeedBenchmark::Contestants SpeedBenchmark::MakeContestants(const SpeedSize& siz
   }
   if (first) {
     contestants.push_back(MakePipelineContestant(
-        "pipeline, latency, " + devices_.front().name, "pipeline.latency", {},
-        {.device = devices_.front().selector, .frames = size.frames, .one_at_a_time = true}));
+        "pipeline, latency, " + devices_.devices.front().name, "pipeline.latency", {},
+        {.device = devices_.devices.front().selector,
+         .frames = size.frames,
+         .one_at_a_time = true}));
   }
   return contestants;
 }
@@ -191,7 +139,7 @@ void SpeedBenchmark::AddTable(const Contestants& contestants, const SpeedSize& s
 void SpeedBenchmark::MeasureSize(const SpeedSize& size) {
   std::vector<SpeedFlight> flights;
   for (const std::string& sequence : settings_.sequences) {
-    flights.push_back(RenderFlight(sequence, size, settings_.threads, progress_));
+    flights.push_back(RenderSpeedFlight(sequence, size, settings_.threads, progress_));
   }
   const Contestants contestants = MakeContestants(size);
   for (int round = 1; round <= settings_.rounds; ++round) {

@@ -289,6 +289,30 @@ TEST_F(OpenClTest, WorksWhereTheCacheCannotBeWritten) {
   EXPECT_EQ(folder_.Files().size(), 1u);
 }
 
+TEST_F(OpenClTest, TellsWhatKernelsAndTransfersTookOnlyWhereItIsAskedTo) {
+  std::vector<std::string> stages;
+  const auto observed = std::make_shared<Context>(device_, ProgramCache({}),
+                                                  [&](const std::string& stage, double ms) {
+                                                    EXPECT_GE(ms, 0.0) << stage;
+                                                    EXPECT_LT(ms, 1e6) << stage;
+                                                    stages.push_back(stage);
+                                                  });
+  EXPECT_EQ(Compute(*observed, observed->Compile(kAddCl)), 84);
+  EXPECT_THAT(stages, testing::ElementsAre("write", "Add", "read"));
+  stages.clear();
+  const auto values = observed->Allocate(sizeof(cl_int));
+  values->Unmap(values->Map(Access::kRead));
+  EXPECT_THAT(stages, testing::ElementsAre("map", "unmap"));
+
+  // The queues of others do not even take the time.
+  const Queue queue(*context_);
+  cl_command_queue_properties properties = 0;
+  ASSERT_EQ(clGetCommandQueueInfo(queue.get(), CL_QUEUE_PROPERTIES, sizeof(properties), &properties,
+                                  nullptr),
+            CL_SUCCESS);
+  EXPECT_EQ(properties & CL_QUEUE_PROFILING_ENABLE, 0U);
+}
+
 TEST(ProgramCacheTest, KeepsBinariesApartByTheirWholeKey) {
   const TemporaryFolder folder;
   const ProgramCache cache(folder.path());

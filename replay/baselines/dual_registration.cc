@@ -20,11 +20,10 @@ std::optional<Eigen::Matrix3d> DualRegistrationPeer::Register(const cv::Mat& gra
   }
   if (!std::exchange(has_previous_, true)) return std::nullopt;
   registration_.SetReference(previous_);
-  const DualRegistration found =
+  const DualRegistration result =
       registration_.Register(current_, start.value_or(Eigen::Matrix3d::Identity()));
-  const bool usable = found.converged() || found.outcome == DualOutcome::kNotConverged;
-  if (!usable) return std::nullopt;
-  return found.reference_from_frame;
+  if (!result.found()) return std::nullopt;
+  return result.reference_from_frame;
 }
 
 void DualRegistrationPeer::Reset() {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/vision/block_residuals.h"
 
-#include <cstring>
-
 #include "gpu-kernels/multiversion.h"
 
 namespace windhover {
@@ -65,9 +63,7 @@ inline RowOfFrame SampleRow(const ReferenceBlock& block, int j, const Warping& w
   const auto u_step = static_cast<float>(m[0]);
   const auto v_step = static_cast<float>(m[3]);
   const auto w_step = static_cast<float>(m[6]);
-  int at[kBlockSide];
-  float fraction_x[kBlockSide];
-  float fraction_y[kBlockSide];
+  RowOfFrame row;
   for (int i = 0; i < kBlockSide; ++i) {
     const auto step = static_cast<float>(i);
     const float inverse = 1.0F / (w0 + w_step * step);
@@ -75,22 +71,13 @@ inline RowOfFrame SampleRow(const ReferenceBlock& block, int j, const Warping& w
     const float v = (v0 + v_step * step) * inverse;
     const int left = static_cast<int>(u);
     const int top = static_cast<int>(v);
-    fraction_x[i] = u - static_cast<float>(left);
-    fraction_y[i] = v - static_cast<float>(top);
-    at[i] = top * stride + left;
-  }
-  // Pixels side by side are fetched together.
-  float upper[2 * kBlockSide];
-  float lower[2 * kBlockSide];
-  for (int i = 0; i < kBlockSide; ++i) {
-    std::memcpy(upper + 2 * i, frame + at[i], 2 * sizeof(float));
-    std::memcpy(lower + 2 * i, frame + at[i] + stride, 2 * sizeof(float));
-  }
-  RowOfFrame row;
-  for (int i = 0; i < kBlockSide; ++i) {
-    const float above = upper[2 * i] + fraction_x[i] * (upper[2 * i + 1] - upper[2 * i]);
-    const float below = lower[2 * i] + fraction_x[i] * (lower[2 * i + 1] - lower[2 * i]);
-    row.values[i] = above + fraction_y[i] * (below - above);
+    const float fraction_x = u - static_cast<float>(left);
+    const float fraction_y = v - static_cast<float>(top);
+    const float* const upper = frame + top * stride + left;
+    const float* const lower = upper + stride;
+    const float above = upper[0] + fraction_x * (upper[1] - upper[0]);
+    const float below = lower[0] + fraction_x * (lower[1] - lower[0]);
+    row.values[i] = above + fraction_y * (below - above);
   }
   return row;
 }
@@ -99,8 +86,7 @@ inline RowOfFrame SampleRow(const ReferenceBlock& block, int j, const Warping& w
 // need no test.
 WINDHOVER_MULTIVERSION
 void SumColumns(const ReferenceBlock& block, const Warping& warping, const float* frame, int stride,
-                float v_first, float v_per_row, ColumnSums* result) {
-  ColumnSums sums;
+                float v_first, float v_per_row, ColumnSums& sums) {
   for (int j = 0; j < kBlockSide; ++j) {
     const RowOfFrame row = SampleRow(block, j, warping, frame, stride);
     const float v = v_first + v_per_row * static_cast<float>(j);
@@ -109,7 +95,7 @@ void SumColumns(const ReferenceBlock& block, const Warping& warping, const float
     const float* const value = block.value.data() + j * kBlockSide;
     const float* const use = block.use.data() + j * kBlockSide;
     for (int i = 0; i < kBlockSide; ++i) {
-      const bool shown = row.values[i] > kDarkest && row.values[i] < kBrightest;
+      const bool shown = (row.values[i] > kDarkest) & (row.values[i] < kBrightest);
       const float seen = shown ? use[i] : 0.0F;
       const float e = seen * (warping.gain * row.values[i] + warping.bias - value[i]);
       const float xe = gradient_x[i] * e;
@@ -125,7 +111,6 @@ void SumColumns(const ReferenceBlock& block, const Warping& warping, const float
       sums.yvve[i] += v * v * ye;
     }
   }
-  *result = sums;
 }
 
 BlockResidual AddColumns(const ColumnSums& sums, float u0, float u_step) {
@@ -168,7 +153,7 @@ void ComputeResiduals(const ReferenceBlocks& reference, const FloatPicture& fram
     const auto u0 = static_cast<float>((block.x - scaled.centre_x) / scaled.px_per_unit);
     const auto v0 = static_cast<float>((block.y - scaled.centre_y) / scaled.px_per_unit);
     ColumnSums sums;
-    SumColumns(block, warping, frame.values.data(), frame.width, v0, step, &sums);
+    SumColumns(block, warping, frame.values.data(), frame.width, v0, step, sums);
     residuals[i] = AddColumns(sums, u0, step);
   }
 }

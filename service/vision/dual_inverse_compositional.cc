@@ -57,6 +57,18 @@ bool IsPlausible(const GainBias& q) {
   return std::isfinite(q.bias) && q.gain > 1.0 / kMostGain && q.gain < kMostGain;
 }
 
+// Takes the step in p and q; false where it leads out of all bounds. The homography `h` becomes
+// W(x, p) o W(x, dp)^-1, the photometric warp likewise.
+bool Move(const DualStep& step, int width, int height, Eigen::Matrix3d& h, GainBias& q) {
+  if (!IsOrientationPreserving(step.warp, width, height) || step.photometric.gain <= 0.0) {
+    return false;
+  }
+  h = h * step.warp.inverse();
+  h /= h(2, 2);
+  q = Compose(q, step.photometric);
+  return IsOrientationPreserving(h, width, height) && IsPlausible(q);
+}
+
 }  // namespace
 
 DualInverseCompositional::DualInverseCompositional(const DualInverseCompositionalOptions& options)
@@ -84,7 +96,8 @@ DualInverseCompositional::LevelResult DualInverseCompositional::RefineAtLevel(
   const Eigen::Matrix3d level_from_picture = picture_from_level.inverse();
   const bool coarsest = level > 0 && level + 1 == static_cast<int>(reference_.size());
   // What a coarse level leaves undone the next one does.
-  const double convergence_px = level == 0 ? options_.convergence_px : 0.03;
+  constexpr double kCoarseConvergencePx = 0.03;
+  const double convergence_px = level == 0 ? options_.convergence_px : kCoarseConvergencePx;
 
   LevelResult result{DualOutcome::kNotConverged, start, 0.0, 0.0, 0.0, 0.0, 0};
   Eigen::Matrix3d h = level_from_picture * start.frame_from_reference * picture_from_level;
@@ -108,15 +121,7 @@ DualInverseCompositional::LevelResult DualInverseCompositional::RefineAtLevel(
       return result;
     }
     ++result.iterations;
-    if (!IsOrientationPreserving(step->warp, reference.width, reference.height) ||
-        step->photometric.gain <= 0.0) {
-      result.outcome = DualOutcome::kNoAgreement;
-      return result;
-    }
-    h = h * step->warp.inverse();
-    h /= h(2, 2);
-    q = Compose(q, step->photometric);
-    if (!IsOrientationPreserving(h, reference.width, reference.height) || !IsPlausible(q)) {
+    if (!Move(*step, reference.width, reference.height, h, q)) {
       result.outcome = DualOutcome::kNoAgreement;
       return result;
     }
@@ -155,17 +160,17 @@ DualRegistration DualInverseCompositional::Register(
   for (int level = levels - 1; level >= 0; --level) {
     const LevelResult result = RefineAtLevel(level, estimate);
     registration.iterations += result.iterations;
-    const bool found =
-        result.outcome == DualOutcome::kConverged || result.outcome == DualOutcome::kNotConverged;
+    registration.outcome = result.outcome;
     if (level > 0) {
       // A coarse level that has lost its way is as if it had not been there.
-      if (found && result.explained >= result.explained_before) estimate = result.estimate;
+      if (registration.found() && result.explained >= result.explained_before) {
+        estimate = result.estimate;
+      }
       continue;
     }
-    registration.outcome = result.outcome;
     registration.residual = result.residual;
     registration.overlap = result.overlap;
-    if (!found) break;
+    if (!registration.found()) break;
     if (result.explained < options_.min_explained) {
       registration.outcome = DualOutcome::kNoAgreement;
       break;

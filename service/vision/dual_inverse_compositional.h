@@ -16,16 +16,17 @@
 namespace windhover {
 
 struct DualInverseCompositionalOptions {
-  int most_iterations = 20;       // at each resolution
-  double convergence_px = 0.008;  // largest move of a corner by a step at which it has converged
-  double min_overlap = 0.25;      // share of the reference that must lie on the frame
-  double min_explained = 0.2;     // share of the reference's variance that the frame must explain
+  int most_iterations = 20;  // at each resolution, from 1 on
+  // Largest move of a corner by a step at which it has converged, px; > 0.
+  double convergence_px = 0.008;
+  double min_overlap = 0.25;   // share, 0 to 1, of the reference that must lie on the frame
+  double min_explained = 0.2;  // share, below 1, of its variance that the frame must explain
 };
 
 enum class DualOutcome : std::uint8_t {
   kConverged,
   kNotConverged,  // still moved after the last iteration; the values are the last ones
-  // Of these the homography and the photometry are the start's.
+  // Not found; the homography and the photometry are the start's:
   kLittleOverlap,  // less of the reference lies on the frame than is asked for
   kNoTexture,      // what both see does not determine the parameters
   kNoAgreement,    // the pictures do not show the same, or a step led out of all bounds
@@ -43,6 +44,8 @@ struct DualRegistration {
   int iterations = 0;    // at all resolutions together
 
   bool converged() const { return outcome == DualOutcome::kConverged; }
+  // Whether there is a result at all, converged or not.
+  bool found() const { return converged() || outcome == DualOutcome::kNotConverged; }
 };
 
 // Refines an eight-parameter homography together with a gain and a bias from all pixels of two

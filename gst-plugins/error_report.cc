@@ -5,6 +5,7 @@
 
 #include "gpu-kernels/backend.h"
 #include "gst-plugins/debug.h"
+#include "gst-plugins/progressive.h"
 #include "service/dds/dds_error.h"
 #include "service/options/option.h"
 
@@ -19,6 +20,8 @@ void PostCurrentException(GstElement* element, bool while_starting) noexcept {
     } else {
       GST_ELEMENT_ERROR(element, STREAM, FORMAT, ("%s", error.what()), (nullptr));
     }
+  } catch (const UnsupportedVideo& error) {
+    GST_ELEMENT_ERROR(element, STREAM, FORMAT, ("%s", error.what()), (nullptr));
   } catch (const DeviceError& error) {
     if (while_starting) {
       GST_ELEMENT_ERROR(element, RESOURCE, NOT_FOUND, ("%s", error.what()), (nullptr));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gst-plugins/luma.h"
+#include "gst-plugins/progressive.h"
 #include "gst-plugins/video_frame_map.h"
 #include "service/gstreamer/homography_meta.h"
 
@@ -33,6 +34,7 @@ void RegisterElement::Stop() {
 }
 
 void RegisterElement::Configure(const GstVideoInfo& info) {
+  RequireProgressive(info);
   info_ = info;
   const int width = GST_VIDEO_INFO_WIDTH(&info);
   const int height = GST_VIDEO_INFO_HEIGHT(&info);
@@ -44,6 +46,7 @@ void RegisterElement::Configure(const GstVideoInfo& info) {
 }
 
 GstFlowReturn RegisterElement::Process(BufferPtr buffer) {
+  RequireProgressive(info_, buffer.get());
   {
     const VideoFrameMap map(info_, buffer.get(), GST_MAP_READ);
     ExtractLuma(map.frame(), gray_);

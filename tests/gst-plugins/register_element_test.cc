@@ -241,6 +241,38 @@ TEST_F(RegisterElementTest, FramesTooSmallAreOneClearError) {
   EXPECT_TRUE(harness.Errors().empty());
 }
 
+constexpr char kSizeCaps[] = "video/x-raw,format=GRAY8,width=162,height=121,framerate=25/1";
+
+TEST_F(RegisterElementTest, InterlacedVideoIsRefusedWithAHint) {
+  for (const std::string mode : {"interleaved", "fields"}) {
+    Harness harness(kRegister);
+    harness.SetCaps(kSizeCaps + (",interlace-mode=" + mode));
+    const auto errors = harness.Errors();
+    ASSERT_EQ(errors.size(), 1u) << mode;
+    EXPECT_EQ(errors[0].domain, GST_STREAM_ERROR);
+    EXPECT_EQ(errors[0].code, GST_STREAM_ERROR_FORMAT);
+    EXPECT_THAT(errors[0].text, testing::HasSubstr("162x121"));
+    EXPECT_THAT(errors[0].text, testing::HasSubstr(mode));
+    EXPECT_THAT(errors[0].text, testing::HasSubstr("Put 'deinterlace' before whregister"));
+    EXPECT_EQ(harness.Push(video_.Frame(0)), GST_FLOW_NOT_NEGOTIATED);
+  }
+}
+
+TEST_F(RegisterElementTest, ProgressiveFramesOfMixedVideoPassUpToTheFirstInterlacedOne) {
+  Harness harness(kRegister);
+  harness.SetCaps(std::string(kSizeCaps) + ",interlace-mode=mixed");
+  for (int t = 0; t < 3; ++t) ASSERT_EQ(harness.Push(video_.Frame(t)), GST_FLOW_OK);
+  EXPECT_TRUE(harness.Errors().empty());
+  BufferPtr interlaced = video_.Frame(3);
+  GST_BUFFER_FLAG_SET(interlaced.get(), GST_VIDEO_BUFFER_FLAG_INTERLACED);
+  EXPECT_EQ(harness.Push(std::move(interlaced)), GST_FLOW_ERROR);
+  const auto errors = harness.Errors();
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].domain, GST_STREAM_ERROR);
+  EXPECT_THAT(errors[0].text, testing::HasSubstr("Put 'deinterlace' before whregister"));
+  EXPECT_EQ(harness.PullAll().size(), 3u);
+}
+
 TEST_F(RegisterElementTest, BufferThatIsTooShortIsAnError) {
   Harness harness(kRegister);
   harness.SetCaps(video_.Caps());

@@ -7,6 +7,7 @@ namespace windhover {
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;          // wrong arguments or option values
+inline constexpr int kExitNotValid = 3;       // register: the registration is degraded or lost
 inline constexpr int kExitInterrupted = 130;  // by Ctrl-C or SIGTERM, after a clean end
 
 }  // namespace windhover

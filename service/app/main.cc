@@ -13,6 +13,7 @@
 #include "service/app/devices.h"
 #include "service/app/exit_code.h"
 #include "service/app/option_settings.h"
+#include "service/app/register_pictures.h"
 #include "service/app/run.h"
 #include "service/app/watch.h"
 #include "service/options/option.h"
@@ -46,6 +47,7 @@ void AddDevice(CLI::App* command, std::string& device) {
 // What the command line says; the chosen command reads it.
 struct Arguments {
   RunOptions run;
+  RegisterOptions register_pictures;
   std::vector<std::string> settings;
   WatchOptions watch;
   std::string topics = "both";
@@ -54,6 +56,12 @@ struct Arguments {
   Command command;
 };
 
+void AddSettings(CLI::App* command, std::vector<std::string>& settings) {
+  command->add_option("--set", settings, "Option of the pipeline, as option=value; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void AddRun(CLI::App& app, Arguments& arguments) {
   CLI::App* command = AddCommand(
       app, "run", "Detect what moves in a video: writes annotated.mp4 and detections.jsonl");
@@ -61,11 +69,7 @@ void AddRun(CLI::App& app, Arguments& arguments) {
   command->add_option("source", options.source, "Video file, URI or MOTChallenge sequence folder")
       ->required();
   command->add_option("--out", options.out, "Folder for the results")->capture_default_str();
-  command
-      ->add_option("--set", arguments.settings,
-                   "Option of the pipeline, as option=value; may be repeated")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  AddSettings(command, arguments.settings);
   command->add_flag("--no-video{false}", options.video, "Do not write annotated.mp4");
   AddDevice(command, options.device);
   command->footer("Options for --set:\n" + DescribeOptions());
@@ -75,6 +79,32 @@ void AddRun(CLI::App& app, Arguments& arguments) {
         options.settings.push_back(ParseOptionSetting(text));
       }
       return Run(options);
+    };
+  });
+}
+
+void AddRegister(CLI::App& app, Arguments& arguments) {
+  CLI::App* command =
+      AddCommand(app, "register",
+                 "Measure how picture A lies over picture B: homography, covariance, quality");
+  RegisterOptions& options = arguments.register_pictures;
+  command->add_option("a", options.a, "Picture file, grey or colour, 8 or 16 bits")->required();
+  command->add_option("b", options.b, "Picture file of the same size")->required();
+  command->add_option("--out", options.out,
+                      "Folder for result.json, blended.png and difference.png");
+  command->add_flag("--json", options.json, "One JSON object, with the whole covariance");
+  AddSettings(command, arguments.settings);
+  AddDevice(command, options.device);
+  command->footer(
+      "Exit code 0: valid; 3: degraded or lost; 1: a picture cannot be used.\n"
+      "Options for --set:\n" +
+      DescribeRegistrationOptions());
+  command->final_callback([&] {
+    arguments.command = [&] {
+      for (const std::string& text : arguments.settings) {
+        SetRegistrationOption(text, options.registration);
+      }
+      return RegisterPictures(options);
     };
   });
 }
@@ -147,6 +177,7 @@ int Main(int argc, char** argv) {
       ->capture_default_str();
   Arguments arguments;
   AddRun(app, arguments);
+  AddRegister(app, arguments);
   AddWatch(app, arguments);
   AddDeviceCommands(app, arguments);
   try {
@@ -157,7 +188,8 @@ int Main(int argc, char** argv) {
     return kExitUsage;
   }
   if (!arguments.command) {
-    ReportError("a command is needed: run, watch, devices or warmup; see windhover --help");
+    ReportError(
+        "a command is needed: run, register, watch, devices or warmup; see windhover --help");
     return kExitUsage;
   }
   spdlog::set_level(spdlog::level::from_str(log_level));

@@ -36,8 +36,8 @@ std::string Range(const ChoiceField<S, E, N>& field) {
   return fmt::format("{}", fmt::join(field.names, " or "));
 }
 
-// Calls visit(options, field) for each option of the pipeline.
-template <typename Visit>
+// Calls visit(options, field) for each option of the structs of a tuple.
+template <typename Structs, typename Visit>
 void ForEachOption(Visit visit) {
   std::apply(
       [&](const auto&... options) {
@@ -46,25 +46,45 @@ void ForEachOption(Visit visit) {
         };
         (visit_struct(options), ...);
       },
-      AllOptions());
+      Structs());
 }
 
+template <typename Structs>
 std::string Names() {
   std::vector<std::string_view> names;
-  ForEachOption([&](const auto&, const auto& field) { names.push_back(field.name); });
+  ForEachOption<Structs>([&](const auto&, const auto& field) { names.push_back(field.name); });
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-}  // namespace
+template <typename Structs>
+std::string Describe() {
+  std::string text;
+  ForEachOption<Structs>([&](const auto& options, const auto& field) {
+    text += fmt::format("  {}={}  ({})\n      {}\n", field.name, OptionText(options, field.name),
+                        Range(field), field.meaning);
+  });
+  return text;
+}
 
-OptionSetting ParseOptionSetting(const std::string& text) {
+OptionSetting Split(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) {
     throw OptionError("'" + text + "' is not of the form option=value");
   }
-  OptionSetting setting{text.substr(0, equals), text.substr(equals + 1)};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+template <typename Structs>
+[[noreturn]] void ThrowUnknown(const std::string& name) {
+  throw OptionError("No option is called '" + name + "'. There are: " + Names<Structs>());
+}
+
+}  // namespace
+
+OptionSetting ParseOptionSetting(const std::string& text) {
+  OptionSetting setting = Split(text);
   AllOptions all;
   const bool known = std::apply(
       [&](auto&... options) {
@@ -72,19 +92,19 @@ OptionSetting ParseOptionSetting(const std::string& text) {
         return (static_cast<int>(SetOption(options, setting.name, setting.value)) + ...) > 0;
       },
       all);
-  if (!known) {
-    throw OptionError("No option is called '" + setting.name + "'. There are: " + Names());
-  }
+  if (!known) ThrowUnknown<AllOptions>(setting.name);
   return setting;
 }
 
-std::string DescribeOptions() {
-  std::string text;
-  ForEachOption([&](const auto& options, const auto& field) {
-    text += fmt::format("  {}={}  ({})\n      {}\n", field.name, OptionText(options, field.name),
-                        Range(field), field.meaning);
-  });
-  return text;
+void SetRegistrationOption(const std::string& text, RegistrationOptions& options) {
+  const OptionSetting setting = Split(text);
+  if (!SetOption(options, setting.name, setting.value)) {
+    ThrowUnknown<std::tuple<RegistrationOptions>>(setting.name);
+  }
 }
+
+std::string DescribeOptions() { return Describe<AllOptions>(); }
+
+std::string DescribeRegistrationOptions() { return Describe<std::tuple<RegistrationOptions>>(); }
 
 }  // namespace windhover

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "service/options/options.h"
+
 namespace windhover {
 
 // An option of the pipeline as the user sets it.
@@ -17,7 +19,12 @@ struct OptionSetting {
 // right.
 OptionSetting ParseOptionSetting(const std::string& text);
 
+// Reads "option=value" and sets it. Throws OptionError as ParseOptionSetting, for options of
+// registration only.
+void SetRegistrationOption(const std::string& text, RegistrationOptions& options);
+
 // One line an option, for people: name, default, range, unit and meaning.
 std::string DescribeOptions();
+std::string DescribeRegistrationOptions();
 
 }  // namespace windhover

@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "service/app/registration_json.h"
+
 namespace windhover {
 namespace {
 
@@ -16,31 +18,10 @@ std::string Line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-const char* Name(RegistrationQuality quality) {
-  switch (quality) {
-    case RegistrationQuality::kValid:
-      return "valid";
-    case RegistrationQuality::kDegraded:
-      return "degraded";
-    case RegistrationQuality::kLost:
-      break;
-  }
-  return "lost";
-}
-
 const char* Name(Topic topic) { return topic == Topic::kHomography ? "homography" : "detections"; }
 
 const char* Name(Subscriber::EndReason reason) {
   return reason == Subscriber::EndReason::kEnded ? "ended" : "lost";
-}
-
-template <int N>
-Json RowMajor(const Eigen::Matrix<double, N, N>& matrix) {
-  Json numbers = Json::array();
-  for (int row = 0; row < N; ++row) {
-    for (int column = 0; column < N; ++column) numbers.push_back(matrix(row, column));
-  }
-  return numbers;
 }
 
 Json Frame(const char* type, const FrameSample& sample, std::uint64_t frame_number) {
@@ -64,7 +45,7 @@ std::string Seconds(std::int64_t pts_ns) {
 std::string JsonLine(const HomographySample& sample) {
   const FrameRegistration& registration = sample.registration;
   Json json = Frame("homography", sample, registration.frame_number);
-  json["quality"] = Name(registration.quality);
+  json["quality"] = NameOf(registration.quality);
   json["starts_segment"] = registration.starts_segment;
   json["change"] = NameOf(registration.change);
   json["previous_from_frame"] = RowMajor<3>(registration.previous_from_frame);
@@ -124,9 +105,10 @@ std::string TextLine(const HomographySample& sample) {
   return fmt::format(
       "{} frame {} at {}: homography {}, moved {:.2f} {:.2f} px, {} of {} tiles, residual {:.3f} "
       "px, overlap {:.0f} %{}{}\n",
-      sample.stream, registration.frame_number, Seconds(sample.pts_ns), Name(registration.quality),
-      before.x() - centre.x(), before.y() - centre.y(), registration.inliers, registration.tiles,
-      registration.residual_px, 100.0 * registration.overlap,
+      sample.stream, registration.frame_number, Seconds(sample.pts_ns),
+      NameOf(registration.quality), before.x() - centre.x(), before.y() - centre.y(),
+      registration.inliers, registration.tiles, registration.residual_px,
+      100.0 * registration.overlap,
       registration.change == FrameChange::kSteady
           ? ""
           : fmt::format(", {}", NameOf(registration.change)),

@@ -62,7 +62,7 @@ BELONGS_TO = {
         "replay/",
         "tests/",
     ),
-    "opencv2/": ("service/vision/", "gst-plugins/", "replay/", "tests/"),
+    "opencv2/": ("service/vision/", "service/app/", "gst-plugins/", "replay/", "tests/"),
     "Eigen/": (
         "service/vision/",
         "service/dds/",

@@ -361,7 +361,7 @@ TEST(CommandTest, EveryCommandHasHelpAndVersion) {
 TEST(CommandTest, WrongCommandsAreNamed) {
   const Outcome none = RunToEnd({WINDHOVER_EXECUTABLE});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.errors, HasSubstr("run, watch, devices or warmup"));
+  EXPECT_THAT(none.errors, HasSubstr("run, register, watch, devices or warmup"));
   const Outcome wrong = RunToEnd({WINDHOVER_EXECUTABLE, "fly"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.errors, HasSubstr("fly"));

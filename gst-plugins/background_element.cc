@@ -36,6 +36,7 @@ void BackgroundElement::Start() {
 void BackgroundElement::Stop() {
   held_.Clear(source_pad());
   background_.reset();
+  luma_ = {};
   gray_ = {};
   backend_.reset();
   measured_.reset();
@@ -49,6 +50,7 @@ void BackgroundElement::Configure(const GstVideoInfo& info) {
   const int height = GST_VIDEO_INFO_HEIGHT(&info);
   if (background_ == nullptr || gray_.width() != width || gray_.height() != height) {
     background_.reset();
+    luma_.Reset();
     background_ = std::make_unique<BackgroundSubtraction>(backend_, width, height, options_,
                                                           registration_options_);
     gray_ = backend_->MakeImage<std::uint8_t>(width, height);
@@ -70,9 +72,14 @@ GstFlowReturn BackgroundElement::Process(BufferPtr buffer) {
   if (meta == nullptr || meta->width != gray_.width() || meta->height != gray_.height()) {
     throw std::runtime_error("whbackground needs whregister before it, at the same frame size");
   }
+  bool jumped = false;
   {
     const VideoFrameMap map(info_, buffer.get(), GST_MAP_READ);
-    ExtractLuma(map.frame(), gray_);
+    jumped = luma_.Extract(map.frame(), gray_);
+  }
+  if (jumped) {
+    const GstFlowReturn drained = Drain();
+    if (drained != GST_FLOW_OK) return drained;
   }
   background_->Push(gray_, meta->registration);
   if (measured_ && measured_->FrameIn(GST_BUFFER_PTS(buffer.get()))) {
@@ -118,6 +125,7 @@ GstFlowReturn BackgroundElement::Drain() {
 }
 
 void BackgroundElement::Reset() {
+  luma_.Reset();
   held_.Clear(source_pad());
   if (background_ != nullptr) background_->Reset();
   if (measured_) measured_->Interrupt();

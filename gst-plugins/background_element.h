@@ -46,6 +46,7 @@ class BackgroundElement
   BackgroundOptions options_;
   RegistrationOptions registration_options_;
   GstVideoInfo info_;
+  StreamLuma luma_;
   GrayImage gray_;
   std::unique_ptr<BackgroundSubtraction> background_;
   HeldStream held_;

@@ -18,7 +18,8 @@ struct Colour {
   double blue = 0.0;
 };
 
-// A video frame to draw on, in the memory where it lies and in its own format (luma.h says which).
+// A video frame to draw on, in the memory where it lies and in its own format, one of
+// WINDHOVER_8_BIT_FORMATS (luma.h).
 // Coordinates are those of the frame, px, pixel centres at integers; thicknesses are px.
 class Canvas {
  public:

@@ -5,7 +5,6 @@
 
 #include "gst-plugins/debug.h"
 #include "gst-plugins/error_report.h"
-#include "gst-plugins/luma.h"
 
 namespace windhover {
 namespace {
@@ -239,7 +238,7 @@ void InitClass(gpointer klass, gpointer data) {
   const ElementText& text = description.text;
   gst_element_class_set_static_metadata(element_class, text.long_name, text.klass, text.description,
                                         "The Windhover authors");
-  GstCaps* caps = gst_caps_from_string(GST_VIDEO_CAPS_MAKE(WINDHOVER_VIDEO_FORMATS));
+  GstCaps* caps = gst_caps_from_string(description.caps);
   gst_element_class_add_pad_template(
       element_class, gst_pad_template_new("sink", GST_PAD_SINK, GST_PAD_ALWAYS, caps));
   gst_element_class_add_pad_template(

@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "gst-plugins/luma.h"
 #include "gst-plugins/option_properties.h"
 
 namespace windhover {
@@ -34,6 +35,9 @@ struct ElementText {
 // InstallProperties(GObjectClass*)` and a constructor from the GstElement*.
 class Element {
  public:
+  // Of both pads; an element that takes less has a kCaps of its own.
+  static constexpr const char* kCaps = GST_VIDEO_CAPS_MAKE(WINDHOVER_VIDEO_FORMATS);
+
   explicit Element(GstElement* host) : host_(host) {}
   virtual ~Element() = default;
   Element(const Element&) = delete;
@@ -128,6 +132,7 @@ struct ElementHost {
 
 struct ElementTypeDescription {
   ElementText text;
+  const char* caps;
   void (*install_properties)(GObjectClass*);
   Element* (*make)(GstElement*);
 };
@@ -138,7 +143,8 @@ GType RegisterElementType(const ElementTypeDescription& description);
 template <typename T>
 bool MakeAvailable(GstPlugin* plugin) {
   static const ElementTypeDescription description = {
-      T::kText, T::InstallProperties, [](GstElement* host) -> Element* { return new T(host); }};
+      T::kText, T::kCaps, T::InstallProperties,
+      [](GstElement* host) -> Element* { return new T(host); }};
   return gst_element_register(plugin, T::kText.name, GST_RANK_NONE,
                               RegisterElementType(description)) != FALSE;
 }

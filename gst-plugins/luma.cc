@@ -65,19 +65,62 @@ RowFunction RowFunctionFor(GstVideoFormat format) {
   }
 }
 
+void CheckSize(const GstVideoFrame& frame, const GrayImage& gray) {
+  if (gray.width() != GST_VIDEO_FRAME_WIDTH(&frame) ||
+      gray.height() != GST_VIDEO_FRAME_HEIGHT(&frame)) {
+    throw std::invalid_argument("the luma image does not have the frame's size");
+  }
+}
+
+// Calls visit(x, y, value) for each pixel of a GRAY16 frame; bytes may lie at odd addresses.
+template <typename Visit>
+void ForEachGray16(const GstVideoFrame& frame, Visit visit) {
+  const auto* data = static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&frame, 0));
+  const std::ptrdiff_t stride = GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0);
+  const int low_byte = GST_VIDEO_FRAME_FORMAT(&frame) == GST_VIDEO_FORMAT_GRAY16_LE ? 0 : 1;
+  for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(&frame); ++y) {
+    const std::uint8_t* row = data + y * stride;
+    for (int x = 0; x < GST_VIDEO_FRAME_WIDTH(&frame); ++x) {
+      visit(x, y,
+            static_cast<std::uint16_t>(row[2 * x + low_byte] | row[2 * x + 1 - low_byte] << 8));
+    }
+  }
+}
+
 }  // namespace
 
 void ExtractLuma(const GstVideoFrame& frame, GrayImage& gray) {
-  const int width = GST_VIDEO_FRAME_WIDTH(&frame);
-  const int height = GST_VIDEO_FRAME_HEIGHT(&frame);
-  if (gray.width() != width || gray.height() != height) {
-    throw std::invalid_argument("the luma image does not have the frame's size");
-  }
+  CheckSize(frame, gray);
   const RowFunction convert_row = RowFunctionFor(GST_VIDEO_FRAME_FORMAT(&frame));
   const auto* data = static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&frame, 0));
   const std::ptrdiff_t stride = GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0);
   const MappedImage<std::uint8_t> mapped = gray.Write();
-  for (int y = 0; y < height; ++y) convert_row(data + y * stride, mapped.row(y), width);
+  for (int y = 0; y < gray.height(); ++y) {
+    convert_row(data + y * stride, mapped.row(y), gray.width());
+  }
+}
+
+bool StreamLuma::Extract(const GstVideoFrame& frame, GrayImage& gray) {
+  const GstVideoFormat format = GST_VIDEO_FRAME_FORMAT(&frame);
+  if (format != GST_VIDEO_FORMAT_GRAY16_LE && format != GST_VIDEO_FORMAT_GRAY16_BE) {
+    ExtractLuma(frame, gray);
+    return false;
+  }
+  CheckSize(frame, gray);
+  if (automatic_ == nullptr) automatic_ = std::make_unique<Automatic>();
+  Automatic& automatic = *automatic_;
+  automatic.histogram.Clear();
+  ForEachGray16(frame, [&](int, int, std::uint16_t value) { automatic.histogram.Add(value); });
+  const bool jumped = automatic.range.Follow(automatic.histogram.RobustRange());
+  FillTable(automatic.range.range(), automatic.table);
+  const MappedImage<std::uint8_t> mapped = gray.Write();
+  ForEachGray16(
+      frame, [&](int x, int y, std::uint16_t value) { mapped.at(x, y) = automatic.table[value]; });
+  return jumped;
+}
+
+void StreamLuma::Reset() {
+  if (automatic_ != nullptr) automatic_->range.Reset();
 }
 
 }  // namespace windhover

@@ -14,6 +14,8 @@ namespace windhover {
 class OverlayElement : public ElementWithOptions<OverlayOptions> {
  public:
   static const ElementText kText;
+  // Not on 16 bits: what is drawn would be in a range that nobody shows.
+  static constexpr const char* kCaps = GST_VIDEO_CAPS_MAKE("{ " WINDHOVER_8_BIT_FORMATS " }");
 
   using ElementWithOptions::ElementWithOptions;
 

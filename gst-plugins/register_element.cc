@@ -28,6 +28,7 @@ void RegisterElement::Start() {
 
 void RegisterElement::Stop() {
   registration_.reset();
+  luma_ = {};
   gray_ = {};
   backend_.reset();
   report_.Reset();
@@ -40,6 +41,7 @@ void RegisterElement::Configure(const GstVideoInfo& info) {
   const int height = GST_VIDEO_INFO_HEIGHT(&info);
   if (registration_ != nullptr && gray_.width() == width && gray_.height() == height) return;
   registration_.reset();
+  luma_.Reset();
   registration_ = std::make_unique<StreamRegistration>(backend_, width, height, options_);
   gray_ = backend_->MakeImage<std::uint8_t>(width, height);
   frames_before_ = frames_;
@@ -49,7 +51,7 @@ GstFlowReturn RegisterElement::Process(BufferPtr buffer) {
   RequireProgressive(info_, buffer.get());
   {
     const VideoFrameMap map(info_, buffer.get(), GST_MAP_READ);
-    ExtractLuma(map.frame(), gray_);
+    if (luma_.Extract(map.frame(), gray_)) registration_->Reset();
   }
   FrameRegistration registration = registration_->Register(gray_);
   registration.frame_number += frames_before_;
@@ -72,6 +74,7 @@ GstFlowReturn RegisterElement::Process(BufferPtr buffer) {
 }
 
 void RegisterElement::Reset() {
+  luma_.Reset();
   if (registration_ != nullptr) registration_->Reset();
 }
 

@@ -35,6 +35,7 @@ class RegisterElement : public ElementWithOptions<RegistrationOptions, DeviceOpt
   std::shared_ptr<Backend> backend_;
   RegistrationOptions options_;
   GstVideoInfo info_;
+  StreamLuma luma_;
   GrayImage gray_;
   std::unique_ptr<StreamRegistration> registration_;
   // Frames numbered by earlier `registration_`s, and in all.

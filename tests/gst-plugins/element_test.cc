@@ -5,6 +5,9 @@
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "gst-plugins/evidence_meta.h"
 #include "service/gstreamer/detection_meta.h"
 #include "tests/gst-plugins/harness.h"
@@ -82,6 +85,29 @@ TEST(MotionElement, BlackVideoHasNoDetections) {
   for (const BufferPtr& buffer : out) {
     EXPECT_EQ(gst_buffer_get_meta(buffer.get(), GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE),
               nullptr);
+  }
+}
+
+// The whole chain; detections as of the twin of 8 bits. The overlay draws on 8 bits only.
+TEST(Elements, TakeThermalVideo) {
+  for (const GstVideoFormat format : {GST_VIDEO_FORMAT_GRAY16_LE, GST_VIDEO_FORMAT_GRAY16_BE}) {
+    TestVideo plain(kWidth, kHeight), thermal(kWidth, kHeight, format);
+    std::vector<int> detections[2];
+    int which = 0;
+    for (TestVideo* video : {&plain, &thermal}) {
+      Harness harness(kAnalysis);
+      harness.SetCaps(video->Caps());
+      for (int t = 0; t < 25; ++t) ASSERT_EQ(harness.Push(video->Frame(t)), GST_FLOW_OK);
+      harness.PushEvent(gst_event_new_eos());
+      EXPECT_TRUE(harness.Errors().empty());
+      for (const BufferPtr& buffer : harness.PullAll()) {
+        detections[which].push_back(static_cast<int>(
+            gst_buffer_get_n_meta(buffer.get(), GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)));
+      }
+      ++which;
+    }
+    EXPECT_EQ(detections[1], detections[0]);
+    EXPECT_GT(std::count(detections[1].begin(), detections[1].end(), 1), 10);
   }
 }
 

@@ -79,6 +79,10 @@ TEST_P(RegisterFormatTest, MeasuresTheMotionAndLeavesThePictureAlone) {
 INSTANTIATE_TEST_SUITE_P(Formats, RegisterFormatTest,
                          testing::Values(FormatCase{GST_VIDEO_FORMAT_GRAY8, Layout::kTight},
                                          FormatCase{GST_VIDEO_FORMAT_GRAY8, Layout::kWithMeta},
+                                         FormatCase{GST_VIDEO_FORMAT_GRAY16_LE, Layout::kTight},
+                                         FormatCase{GST_VIDEO_FORMAT_GRAY16_LE, Layout::kWithMeta},
+                                         FormatCase{GST_VIDEO_FORMAT_GRAY16_BE, Layout::kTight},
+                                         FormatCase{GST_VIDEO_FORMAT_GRAY16_BE, Layout::kWithMeta},
                                          FormatCase{GST_VIDEO_FORMAT_NV12, Layout::kTight},
                                          FormatCase{GST_VIDEO_FORMAT_NV12, Layout::kWithMeta},
                                          FormatCase{GST_VIDEO_FORMAT_I420, Layout::kTight},
@@ -239,6 +243,74 @@ TEST_F(RegisterElementTest, FramesTooSmallAreOneClearError) {
   TestVideo small(64, 48);
   EXPECT_EQ(harness.Push(small.Frame(0)), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_TRUE(harness.Errors().empty());
+}
+
+// Adds to all pixels of a GRAY16_LE frame.
+void AddTo(GstBuffer* buffer, int offset) {
+  GstMapInfo map;
+  ASSERT_TRUE(gst_buffer_map(buffer, &map, GST_MAP_READWRITE));
+  for (gsize i = 0; i + 1 < map.size; i += 2) {
+    const int value = GST_READ_UINT16_LE(map.data + i) + offset;
+    GST_WRITE_UINT16_LE(map.data + i, static_cast<guint16>(value));
+  }
+  gst_buffer_unmap(buffer, &map);
+}
+
+TEST_F(RegisterElementTest, ThermalVideoRegistersAsItsTwinOf8Bits) {
+  TestVideo thermal(kWidth, kHeight, GST_VIDEO_FORMAT_GRAY16_LE);
+  Harness plain(kRegister), sixteen(kRegister);
+  plain.SetCaps(video_.Caps());
+  sixteen.SetCaps(thermal.Caps());
+  for (int t = 0; t < 10; ++t) {
+    ASSERT_EQ(plain.Push(video_.Frame(t)), GST_FLOW_OK);
+    BufferPtr frame = thermal.Frame(t);
+    // A hot pixel that blinks must not change what the others look like.
+    const std::uint8_t hot[] = {0xff, 0xff};
+    if (t % 2 == 1) gst_buffer_fill(frame.get(), 5000, hot, 2);
+    ASSERT_EQ(sixteen.Push(std::move(frame)), GST_FLOW_OK);
+  }
+  const auto expected = RegistrationsOf(plain.PullAll());
+  const auto actual = RegistrationsOf(sixteen.PullAll());
+  ASSERT_EQ(actual.size(), expected.size());
+  double plain_error = 0.0, thermal_error = 0.0;
+  for (int t = 1; t < 10; ++t) {
+    const Eigen::Matrix3d truth =
+        InverseHomography(video_.GroundFromFrame(t - 1)) * video_.GroundFromFrame(t);
+    plain_error += HomographyRms(expected[t].previous_from_frame, truth, kWidth, kHeight);
+    thermal_error += HomographyRms(actual[t].previous_from_frame, truth, kWidth, kHeight);
+    EXPECT_EQ(actual[t].quality, RegistrationQuality::kValid) << t;
+    EXPECT_FALSE(actual[t].starts_segment) << t;
+  }
+  EXPECT_LT(thermal_error, 1.1 * plain_error + 0.01 * 9);
+}
+
+TEST_F(RegisterElementTest, ConstantThermalVideoIsLostWithoutNan) {
+  TestVideo thermal(kWidth, kHeight, GST_VIDEO_FORMAT_GRAY16_LE);
+  Harness harness(kRegister);
+  harness.SetCaps(thermal.Caps());
+  for (int t = 0; t < 3; ++t) ASSERT_EQ(harness.Push(thermal.Black(t)), GST_FLOW_OK);
+  for (const FrameRegistration& r : RegistrationsOf(harness.PullAll())) {
+    EXPECT_EQ(r.quality, RegistrationQuality::kLost);
+  }
+}
+
+// A camera that calibrates itself and shows the same ground at other temperatures from then on.
+TEST_F(RegisterElementTest, AStepOfTheThermalRangeStartsASegment) {
+  TestVideo thermal(kWidth, kHeight, GST_VIDEO_FORMAT_GRAY16_LE);
+  Harness harness(kRegister);
+  harness.SetCaps(thermal.Caps());
+  for (int t = 0; t < 8; ++t) {
+    BufferPtr frame = thermal.Frame(t);
+    if (t >= 4) AddTo(frame.get(), 5000);
+    ASSERT_EQ(harness.Push(std::move(frame)), GST_FLOW_OK);
+  }
+  const auto registrations = RegistrationsOf(harness.PullAll());
+  ASSERT_EQ(registrations.size(), 8u);
+  for (std::size_t t = 0; t < 8; ++t) {
+    EXPECT_EQ(registrations[t].starts_segment, t == 0 || t == 4) << t;
+    EXPECT_EQ(registrations[t].quality, RegistrationQuality::kValid) << t;
+    EXPECT_EQ(registrations[t].frame_number, t);
+  }
 }
 
 constexpr char kSizeCaps[] = "video/x-raw,format=GRAY8,width=162,height=121,framerate=25/1";

@@ -81,6 +81,9 @@ void TestVideo::Fill(GstBuffer* buffer, const GrayImage* gray) {
   const VideoFrameMap map(info_, buffer, GST_MAP_WRITE);
   const GstVideoFrame& frame = map.frame();
   const bool is_rgb = GST_VIDEO_INFO_IS_RGB(&info_);
+  const int low_byte = GST_VIDEO_INFO_FORMAT(&info_) == GST_VIDEO_FORMAT_GRAY16_BE ? 1 : 0;
+  const bool is_gray16 =
+      low_byte == 1 || GST_VIDEO_INFO_FORMAT(&info_) == GST_VIDEO_FORMAT_GRAY16_LE;
   for (int component = 0; component < static_cast<int>(GST_VIDEO_FRAME_N_COMPONENTS(&frame));
        ++component) {
     auto* data = static_cast<std::uint8_t*>(GST_VIDEO_FRAME_COMP_DATA(&frame, component));
@@ -90,7 +93,15 @@ void TestVideo::Fill(GstBuffer* buffer, const GrayImage* gray) {
     for (int y = 0; y < GST_VIDEO_FRAME_COMP_HEIGHT(&frame, component); ++y) {
       for (int x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH(&frame, component); ++x) {
         const int value = !is_grey ? 128 : gray != nullptr ? gray->Read().at(x, y) : 0;
-        data[y * stride + x * step] = static_cast<std::uint8_t>(value);
+        std::uint8_t* pixel = data + y * stride + x * step;
+        if (!is_gray16) {
+          *pixel = static_cast<std::uint8_t>(value);
+          continue;
+        }
+        // Byte by byte, for strides may be odd.
+        const int thermal = kThermalBlack + kThermalGain * value;
+        pixel[low_byte] = static_cast<std::uint8_t>(thermal & 0xFF);
+        pixel[1 - low_byte] = static_cast<std::uint8_t>(thermal >> 8);
       }
     }
   }

@@ -22,6 +22,11 @@ enum class Layout {
 // Video of a flight over a SyntheticGround, with one bright object that moves over it.
 class TestVideo {
  public:
+  // GRAY16 video holds kThermalBlack + kThermalGain * v for the grey value v, as a thermal camera
+  // of 14 bits might.
+  static constexpr int kThermalBlack = 7000;
+  static constexpr int kThermalGain = 6;
+
   static constexpr GstClockTime kFrameTime = 40 * GST_MSECOND;
   static constexpr GstClockTime kFirstPts = 5 * GST_SECOND;
 

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gst-plugins/debug.h"
 #include "gst-plugins/evidence_meta.h"
 #include "gst-plugins/luma.h"
 #include "gst-plugins/video_frame_map.h"
@@ -39,9 +38,7 @@ void BackgroundElement::Stop() {
   luma_ = {};
   gray_ = {};
   backend_.reset();
-  measured_.reset();
-  latency_ = 0;
-  held_buffers_ = 0;
+  latency_.Stop();
 }
 
 void BackgroundElement::Configure(const GstVideoInfo& info) {
@@ -55,16 +52,7 @@ void BackgroundElement::Configure(const GstVideoInfo& info) {
                                                           registration_options_);
     gray_ = backend_->MakeImage<std::uint8_t>(width, height);
   }
-  const int lookahead = background_->lookahead();
-  held_buffers_ = lookahead;
-  measured_.reset();
-  if (GST_VIDEO_INFO_FPS_N(&info) > 0) {
-    SetLatency(gst_util_uint64_scale(lookahead * GST_SECOND, GST_VIDEO_INFO_FPS_D(&info),
-                                     GST_VIDEO_INFO_FPS_N(&info)));
-  } else if (lookahead > 0) {
-    measured_.emplace(lookahead);
-    SetLatency(0);
-  }
+  latency_.Configure(info, background_->lookahead());
 }
 
 GstFlowReturn BackgroundElement::Process(BufferPtr buffer) {
@@ -82,9 +70,7 @@ GstFlowReturn BackgroundElement::Process(BufferPtr buffer) {
     if (drained != GST_FLOW_OK) return drained;
   }
   background_->Push(gray_, meta->registration);
-  if (measured_ && measured_->FrameIn(GST_BUFFER_PTS(buffer.get()))) {
-    SetLatency(measured_->delay());
-  }
+  latency_.FrameIn(buffer.get());
   held_.AddFrame(std::move(buffer));
   return SendComplete();
 }
@@ -93,9 +79,7 @@ GstFlowReturn BackgroundElement::SendComplete() {
   while (std::shared_ptr<const MotionEvidence> evidence = background_->Pop()) {
     BufferPtr buffer = held_.TakeFrame();
     if (buffer == nullptr) throw std::logic_error("evidence for a frame that is not held");
-    if (measured_ && measured_->FrameOut(GST_BUFFER_PTS(buffer.get()))) {
-      SetLatency(measured_->delay());
-    }
+    latency_.FrameOut(buffer.get());
     buffer = MakeWritable(std::move(buffer));
     AddEvidence(buffer.get(), std::move(evidence));
     const GstFlowReturn result = Push(std::move(buffer));
@@ -120,7 +104,7 @@ GstFlowReturn BackgroundElement::Drain() {
   background_->Drain();
   const GstFlowReturn result = SendComplete();
   background_->Reset();
-  if (measured_) measured_->Interrupt();
+  latency_.Interrupt();
   return result;
 }
 
@@ -128,14 +112,7 @@ void BackgroundElement::Reset() {
   luma_.Reset();
   held_.Clear(source_pad());
   if (background_ != nullptr) background_->Reset();
-  if (measured_) measured_->Interrupt();
-}
-
-void BackgroundElement::SetLatency(GstClockTime latency) {
-  if (latency_.exchange(latency) == latency) return;
-  GST_INFO_OBJECT(host(), "holding frames adds a latency of %" GST_TIME_FORMAT,
-                  GST_TIME_ARGS(latency));
-  gst_element_post_message(host(), gst_message_new_latency(GST_OBJECT(host())));
+  latency_.Interrupt();
 }
 
 }  // namespace windhover

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <memory>
-#include <optional>
 
 #include "gst-plugins/backend_context.h"
 #include "gst-plugins/element.h"
 #include "gst-plugins/held_stream.h"
+#include "gst-plugins/holding_latency.h"
 #include "service/options/options.h"
 #include "service/vision/background.h"
 
@@ -21,7 +20,8 @@ class BackgroundElement
   static const ElementText kText;
   static void InstallProperties(GObjectClass* klass);
 
-  explicit BackgroundElement(GstElement* host) : ElementWithOptions(host), shared_(host) {}
+  explicit BackgroundElement(GstElement* host)
+      : ElementWithOptions(host), shared_(host), latency_(host) {}
 
   void Start() override;
   void Stop() override;
@@ -31,15 +31,14 @@ class BackgroundElement
   bool Forward(GstEvent* event) override;
   GstFlowReturn Drain() override;
   void Reset() override;
-  GstClockTime added_latency() const override { return latency_; }
-  guint held_buffers() const override { return held_buffers_; }
+  GstClockTime added_latency() const override { return latency_.latency(); }
+  guint held_buffers() const override { return latency_.held_buffers(); }
   void SetContext(GstContext* context) override { shared_.SetContext(context); }
   bool AnswerContext(GstQuery* query) override { return shared_.Answer(query); }
 
  private:
   // Sends on each frame whose evidence is complete. Drops all that is held where that fails.
   GstFlowReturn SendComplete();
-  void SetLatency(GstClockTime latency);
 
   SharedBackend shared_;
   std::shared_ptr<Backend> backend_;
@@ -50,10 +49,7 @@ class BackgroundElement
   GrayImage gray_;
   std::unique_ptr<BackgroundSubtraction> background_;
   HeldStream held_;
-  // Only where the caps say no frame rate.
-  std::optional<MeasuredDelay> measured_;
-  std::atomic<GstClockTime> latency_ = 0;
-  std::atomic<guint> held_buffers_ = 0;
+  HoldingLatency latency_;
 };
 
 }  // namespace windhover

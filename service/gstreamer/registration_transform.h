@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "service/vision/stabilisation.h"
 #include "service/vision/types.h"
 
 namespace windhover {
@@ -18,6 +19,16 @@ namespace windhover {
 FrameRegistration RegistrationInNewPicture(const FrameRegistration& registration,
                                            const Eigen::Matrix3d& new_from_old, int old_width,
                                            int old_height, int new_width, int new_height);
+
+// The registration of a frame, told for the stabilised picture that shows it: from this screen to
+// those that showed the frame before and the anchor. Where the ground holds still on the screen,
+// the homographies are close to the identity. A frame that does not continue the one shown before
+// it starts a segment. `width` and `height` are the frame's and the screen's, px.
+//
+// The corner covariance is carried over as above, the residual multiplied by the scale of the
+// screen that showed the reference. Counts, overlap and quality are what they were measured as.
+FrameRegistration RegistrationOnScreen(const FrameRegistration& registration,
+                                       const ScreenPose& pose, int width, int height);
 
 // new_from_old of a picture scaled from one size to another. Pixel centres lie at integers, so that
 // x_new + 0.5 = (x_old + 0.5) * new_width / old_width.

@@ -8,6 +8,7 @@
 #include "service/options/options.h"
 #include "service/options/overlay_options.h"
 #include "service/options/publish_options.h"
+#include "service/options/stabilisation_options.h"
 
 namespace windhover {
 namespace {
@@ -107,5 +108,7 @@ int main() {
   PrintTable<MotionOptions>("Motion", "Of `whmotion`.");
   PrintTable<PublishOptions>("Publishing", "Of `whpublish`.");
   PrintTable<OverlayOptions>("Overlay", "Of `whoverlay`.");
+  PrintTable<StabilisationOptions>(
+      "Stabilisation", "Of `whstabilize`, which `windhover run` does without: no keys of `--set`.");
   return 0;
 }

@@ -12,6 +12,7 @@
 #include "gst-plugins/evidence_meta.h"
 #include "service/gstreamer/registration_transform.h"
 #include "service/vision/homography.h"
+#include "service/vision/screen_pose.h"
 #include "tests/gst-plugins/harness.h"
 #include "tests/support/synthetic_ground.h"
 
@@ -182,6 +183,89 @@ TEST(RegistrationTransform, LostStaysTheIdentity) {
   EXPECT_TRUE(scaled.previous_from_frame.isIdentity(1e-12));
   EXPECT_TRUE(scaled.corner_covariance.isZero(0.0));
   EXPECT_FALSE(scaled.anchor_from_frame.has_value());
+}
+
+// Poses of the frame, of the frame before and of the anchor, each on its own screen.
+struct Screens {
+  Eigen::Matrix3d frame = CameraMotion(kWidth, kHeight, 0.03, 1.05, 12.0, -4.0, 1e-5);
+  Eigen::Matrix3d previous = CameraMotion(kWidth, kHeight, 0.02, 1.0, 10.0, -2.0);
+  Eigen::Matrix3d anchor = CameraMotion(kWidth, kHeight, -0.01, 1.1, 1.0, 0.0, -1e-5);
+
+  ScreenPose Pose(const FrameRegistration& registration) const {
+    ScreenPose pose;
+    pose.screen_from_frame = frame;
+    pose.previous_screen_from_screen =
+        previous * registration.previous_from_frame * frame.inverse();
+    pose.previous_screen_from_screen /= pose.previous_screen_from_screen(2, 2);
+    pose.continues = true;
+    pose.reference_screen_from_reference = anchor;
+    pose.anchor_number = 5;
+    return pose;
+  }
+};
+
+TEST(RegistrationOnScreen, HomographiesLeadFromScreenToScreen) {
+  const Screens screens;
+  const FrameRegistration old = Example();
+  const FrameRegistration now = RegistrationOnScreen(old, screens.Pose(old), kWidth, kHeight);
+  EXPECT_EQ(now.anchor_number, 5u);
+  EXPECT_EQ(now.frame_number, old.frame_number);
+  EXPECT_EQ(now.quality, old.quality);
+  for (const Eigen::Vector2d& x : PictureCorners(kWidth, kHeight)) {
+    const Eigen::Vector2d on_screen = Project(screens.frame, x);
+    EXPECT_LT((Project(now.previous_from_frame, on_screen) -
+               Project(screens.previous, Project(old.previous_from_frame, x)))
+                  .norm(),
+              1e-9);
+    EXPECT_LT((Project(*now.anchor_from_frame, on_screen) -
+               Project(screens.anchor, Project(*old.anchor_from_frame, x)))
+                  .norm(),
+              1e-9);
+  }
+}
+
+// Against many draws of where the measured homography puts the frame's corners.
+TEST(RegistrationOnScreen, CovarianceFollows) {
+  const Screens screens;
+  const FrameRegistration old = Example();
+  const FrameRegistration now = RegistrationOnScreen(old, screens.Pose(old), kWidth, kHeight);
+  const Matrix8d factor = old.corner_covariance.llt().matrixL();
+  const auto corners = PictureCorners(kWidth, kHeight);
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  constexpr int kDraws = 20000;
+  Matrix8d sum = Matrix8d::Zero();
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const Eigen::Matrix<double, 8, 1> noise =
+        factor * Eigen::Matrix<double, 8, 1>::NullaryExpr([&] { return normal(random); });
+    auto put = corners;
+    for (int i = 0; i < 4; ++i) {
+      put[i] = Project(*old.anchor_from_frame, corners[i]) + noise.segment<2>(2 * i);
+    }
+    const Eigen::Matrix3d drawn = HomographyOfCorners(put, kWidth, kHeight);
+    Eigen::Matrix<double, 8, 1> error;
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector2d in_frame = Project(screens.frame.inverse(), corners[i]);
+      error.segment<2>(2 * i) = Project(screens.anchor, Project(drawn, in_frame)) -
+                                Project(*now.anchor_from_frame, corners[i]);
+    }
+    sum += error * error.transpose();
+  }
+  const Matrix8d measured = sum / kDraws;
+  EXPECT_LT((measured - now.corner_covariance).norm(), 0.05 * measured.norm());
+}
+
+TEST(RegistrationOnScreen, AFrameThatDoesNotContinueStartsASegment) {
+  FrameRegistration old = Example();
+  ScreenPose pose = Screens().Pose(old);
+  pose.continues = false;
+  pose.anchor_number = old.frame_number;
+  const FrameRegistration now = RegistrationOnScreen(old, pose, kWidth, kHeight);
+  EXPECT_TRUE(now.starts_segment);
+  EXPECT_TRUE(now.previous_from_frame.isIdentity(0.0));
+  EXPECT_TRUE(now.anchor_from_frame->isIdentity(0.0));
+  EXPECT_TRUE(now.corner_covariance.isZero(0.0));
+  EXPECT_EQ(now.anchor_number, old.frame_number);
 }
 
 // The real scaler and the real cropper.

@@ -16,14 +16,16 @@
 #include "service/options/feature_options.h"
 #include "service/options/overlay_options.h"
 #include "service/options/publish_options.h"
+#include "service/options/stabilisation_options.h"
 
 namespace windhover {
 namespace {
 
 using ::testing::HasSubstr;
 
-using AllOptions = std::tuple<DeviceOptions, RegistrationOptions, FeatureRegistrationOptions,
-                              BackgroundOptions, MotionOptions, PublishOptions, OverlayOptions>;
+using AllOptions =
+    std::tuple<DeviceOptions, RegistrationOptions, FeatureRegistrationOptions, BackgroundOptions,
+               MotionOptions, PublishOptions, OverlayOptions, StabilisationOptions>;
 
 template <typename Visit>
 void ForEachStruct(Visit&& visit) {

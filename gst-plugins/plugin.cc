@@ -6,6 +6,7 @@
 #include "gst-plugins/overlay_element.h"
 #include "gst-plugins/publish_element.h"
 #include "gst-plugins/register_element.h"
+#include "gst-plugins/stabilize_element.h"
 #include "service/gstreamer/homography_meta.h"
 
 namespace {
@@ -15,7 +16,7 @@ gboolean InitPlugin(GstPlugin* plugin) {
   gst_windhover_homography_meta_get_info();
   return MakeAvailable<RegisterElement>(plugin) && MakeAvailable<BackgroundElement>(plugin) &&
          MakeAvailable<MotionElement>(plugin) && MakeAvailable<PublishElement>(plugin) &&
-         MakeAvailable<OverlayElement>(plugin);
+         MakeAvailable<OverlayElement>(plugin) && MakeAvailable<StabilizeElement>(plugin);
 }
 
 }  // namespace

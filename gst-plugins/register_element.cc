@@ -15,9 +15,8 @@ const ElementText RegisterElement::kText = {
     "Measures how each frame of a moving camera lies over the ground, by tiled phase correlation, "
     "and attaches the homographies to the previous frame and, in anchor mode, to a keyframe, with "
     "covariance, inliers and quality, as GstWindhoverHomographyMeta. Pictures pass unchanged. "
-    "Posts "
-    "the element message 'windhover-registration' when registration is lost or found again. Stands "
-    "first: whregister ! whbackground ! whmotion ! whpublish ! whoverlay"};
+    "Posts the element message 'windhover-registration' when registration is lost or found again. "
+    "Stands first: whregister ! whbackground ! whmotion ! whpublish ! whoverlay"};
 
 void RegisterElement::Start() {
   options_ = Options<RegistrationOptions>();

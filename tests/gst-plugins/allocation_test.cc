@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "tests/gst-plugins/harness.h"
 #include "tests/gst-plugins/test_video.h"
 #include "tests/support/allocation_count.h"
@@ -10,11 +12,11 @@ namespace {
 
 // GStreamer's own allocations do not go through operator new and are not counted; those of our code
 // and of the libraries below it are.
-TEST(Allocation, NoneAFrameAfterWarmUp) {
+class AllocationTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(AllocationTest, NoneAFrameAfterWarmUp) {
   TestVideo video(161, 121, GST_VIDEO_FORMAT_BGR);
-  Harness harness(
-      "whregister device=cpu tile-columns=4 tile-rows=4 ! "
-      "whbackground device=cpu tile-columns=4 tile-rows=4 k=3 lookahead=3");
+  Harness harness(std::string("whregister device=cpu tile-columns=4 tile-rows=4 ! ") + GetParam());
   harness.SetCaps(video.Caps());
   harness.ReserveLog(1000);
   constexpr int kWarmUp = 40;
@@ -30,6 +32,12 @@ TEST(Allocation, NoneAFrameAfterWarmUp) {
   EXPECT_GT(during_warm_up, 0u) << "the plugin's allocations are not counted";
   EXPECT_EQ(after, 0u);
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Elements, AllocationTest,
+    testing::Values("whbackground device=cpu tile-columns=4 tile-rows=4 k=3 lookahead=3",
+                    "whstabilize max-off-screen=0.1",
+                    "whstabilize mode=smooth smoothing-lookahead=3", "whstabilize border=black"));
 
 }  // namespace
 }  // namespace windhover

@@ -45,7 +45,7 @@ TEST_P(ManualPageTest, SaysWhatThereIsToSay) {
 
 INSTANTIATE_TEST_SUITE_P(Elements, ManualPageTest,
                          testing::Values("whregister", "whbackground", "whmotion", "whpublish",
-                                         "whoverlay"),
+                                         "whoverlay", "whstabilize"),
                          [](const auto& info) { return info.param; });
 
 TEST(MotionElement, FindsWhatMovesAndNothingElse) {

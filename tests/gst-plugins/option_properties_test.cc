@@ -10,6 +10,7 @@
 #include "service/options/options.h"
 #include "service/options/overlay_options.h"
 #include "service/options/publish_options.h"
+#include "service/options/stabilisation_options.h"
 #include "tests/gst-plugins/harness.h"
 
 namespace windhover {
@@ -87,6 +88,7 @@ TEST(OptionProperties, EveryFieldIsAProperty) {
   ExpectProperties<MotionOptions>("whmotion");
   ExpectProperties<PublishOptions>("whpublish");
   ExpectProperties<OverlayOptions>("whoverlay");
+  ExpectProperties<StabilisationOptions>("whstabilize");
 }
 
 TEST(OptionProperties, BlurbTellsUnitAndRange) {

@@ -46,10 +46,12 @@ std::string TestVideo::Caps(bool with_framerate) const {
 }
 
 Eigen::Matrix3d TestVideo::GroundFromFrame(int t) const {
+  if (camera_) return camera_(t);
   return CameraMotion(gray_.width(), gray_.height(), 0.004 * t, 1.0, 1.3 * t, -0.7 * t);
 }
 
 Eigen::Vector2d TestVideo::ObjectInFrame(int t) const {
+  if (camera_) return {-1e3, -1e3};
   const Eigen::Vector2d on_ground(0.3 * gray_.width() + 2.2 * t, 0.4 * gray_.height() + 0.2 * t);
   return Project(InverseHomography(GroundFromFrame(t)), on_ground);
 }

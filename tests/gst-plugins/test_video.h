@@ -4,8 +4,10 @@
 #include <gst/video/video.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "gpu-kernels/backend.h"
 #include "gst-plugins/element.h"
@@ -42,6 +44,8 @@ class TestVideo {
   // All pixels black.
   BufferPtr Black(int t);
 
+  // In place of the usual flight; ground_from_frame of frame t. Nothing moves then.
+  void SetCamera(std::function<Eigen::Matrix3d(int t)> camera) { camera_ = std::move(camera); }
   // Where frame t lies over the ground.
   Eigen::Matrix3d GroundFromFrame(int t) const;
   // Top left corner in frame t of the moving object of kObjectSide x kObjectSide px.
@@ -59,6 +63,7 @@ class TestVideo {
   Layout layout_;
   std::shared_ptr<Backend> backend_ = Backend::Create("cpu");
   SyntheticGround ground_;
+  std::function<Eigen::Matrix3d(int t)> camera_;
   GrayImage gray_;
 };
 
